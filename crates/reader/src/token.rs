@@ -80,7 +80,7 @@ pub fn tokens(text: &str) -> Vec<Token> {
             let length = rest.char_indices().take(120).find(|(_, c)| *c == ']').map(|(at, _)| at + 1);
             if let Some(length) = length {
                 let end = start + length;
-                let name = length <= 8;
+                let name = length <= 8 || goes_on(&text[end..]);
                 let kind = if name { TokenKind::Name } else { TokenKind::Mark };
                 let text = if name { "[xxx]" } else { "." }.to_owned();
                 all.push(Token { start, end, text, kind, capital: name });
@@ -136,6 +136,11 @@ pub fn tokens(text: &str) -> Vec<Token> {
         }
     }
     all
+}
+
+/// Whether a sentence goes on behind a withheld part, which names a place then: "on [REDACTED ...] and turned".
+fn goes_on(rest: &str) -> bool {
+    rest.trim_start_matches(' ').starts_with(|c: char| c == ',' || c.is_lowercase())
 }
 
 /// Whether a line goes on with a small letter on the next one.
@@ -225,5 +230,8 @@ mod tests {
             found,
             ["the van ran at 2.5 mph on e . elm st . near [xxx]", "the car 's rear end was hit", "see", "it left"]
         );
+        let withheld =
+            split("It ran on [REDACTED, MAY CONTAIN X] and stopped. It left [REDACTED, MAY CONTAIN X], too.");
+        assert_eq!(withheld, ["it ran on [xxx] and stopped", "it left [xxx] , too"]);
     }
 }

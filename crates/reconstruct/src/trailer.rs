@@ -60,16 +60,20 @@ impl Rig {
     }
 }
 
-/// Whether it is told that the trailer touched: "the left side of the truck's trailer".
+/// Whether it is told that the trailer touched: "the left side of the truck's trailer", by which the partner is named, or which is what
+/// touched.
 pub(crate) fn touches(partner: &Party) -> bool {
-    let part = partner.kind.as_ref().is_some_and(|kind| match &kind.source {
-        Source::Words { text, .. } => {
-            let text = text.to_lowercase();
-            text.contains("trailer") && [" side", " corner", " end", " rear"].iter().any(|word| text.contains(word))
-        }
-        _ => false,
+    let words = |source: &Source| match source {
+        Source::Words { text, .. } => text.to_lowercase(),
+        _ => String::new(),
+    };
+    let named = partner.kind.as_ref().is_some_and(|kind| {
+        let text = words(&kind.source);
+        text.contains("trailer") && [" side", " corner", " end", " rear"].iter().any(|word| text.contains(word))
     });
-    part && told(&partner.kind).and_then(Rig::of).is_some()
+    let part = |text: String| ["the ", "its "].iter().any(|word| text.starts_with(word)) && text.ends_with("trailer");
+    let touched = partner.zones.iter().any(|zone| part(words(&zone.source)));
+    (named || touched) && told(&partner.kind).and_then(Rig::of).is_some()
 }
 
 /// What is drawn of somebody who comes by with a trailer that touches.

@@ -52,6 +52,13 @@ impl Chunker<'_> {
         {
             return self.another_of(first + 2).map(|(noun, length)| (noun, 2 + length));
         }
+        // "what appeared to be a plastic chair": a chair.
+        if self.text(first) == "what"
+            && matches!(self.text(first + 1), "appeared" | "appears" | "seemed" | "seems" | "looked")
+            && (self.text(first + 2), self.text(first + 3)) == ("to", "be")
+        {
+            return self.noun(first + 4).map(|(noun, length)| (noun, 4 + length));
+        }
         let mut draft = self.article(first);
         // "one of them": of those named before.
         if draft.one_of && self.text(draft.at) == "them" {
@@ -68,7 +75,10 @@ impl Chunker<'_> {
         };
         let one_of = draft.one_of;
         let (mut noun, length) = self.heads(draft, head)?;
-        if self.names_a_crash(&noun, first + length) || self.names_a_street(&noun, first, length) {
+        if self.is_mounted_on(first + length)
+            || self.names_a_crash(&noun, first + length)
+            || self.names_a_street(&noun, first, length)
+        {
             return None;
         }
         if one_of {
@@ -221,6 +231,14 @@ impl Chunker<'_> {
             Some((Meaning::Kind(kind), _)) => kind.is_vehicle(),
             _ => false,
         }
+    }
+
+    /// "a truck-mounted sign" names no truck. "A truck mounted the curb" does.
+    pub(super) fn is_mounted_on(&self, behind: usize) -> bool {
+        let next = self.text(behind + 1);
+        let small = DETERMINERS.contains(&next) || PREPOSITIONS.contains(&next) || matches!(next, "and" | "curbs");
+        let word = self.tokens.get(behind + 1).is_some_and(|token| token.kind == TokenKind::Word);
+        self.text(behind) == "mounted" && word && !small
     }
 
     /// "a single car collision".

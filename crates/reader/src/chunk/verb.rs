@@ -22,7 +22,7 @@ struct Candidate<'a> {
 }
 
 /// A phrase is no verb where one of these says so, whichever it is: their order does not matter.
-const NO_VERB: [fn(&Candidate<'_>) -> bool; 20] = [
+const NO_VERB: [fn(&Candidate<'_>) -> bool; 21] = [
     |verb| verb.is_determined(),
     |verb| verb.is_described(),
     |verb| verb.is_turn_of_a_side(),
@@ -43,6 +43,7 @@ const NO_VERB: [fn(&Candidate<'_>) -> bool; 20] = [
     |verb| verb.is_cross_traffic(),
     |verb| verb.is_a_sliding_door(),
     |verb| verb.is_contacts_or_stop_sign(),
+    |verb| verb.is_mounted_on_a_vehicle(),
 ];
 
 impl Candidate<'_> {
@@ -251,6 +252,12 @@ impl Candidate<'_> {
     /// "the cross traffic".
     fn is_cross_traffic(&self) -> bool {
         self.word(0) == "cross" && matches!(self.word(1), "traffic" | "street" | "road" | "walk")
+    }
+
+    /// "a truck-mounted sign".
+    fn is_mounted_on_a_vehicle(&self) -> bool {
+        let before = self.at.checked_sub(1).and_then(|at| self.chunker.head(at));
+        before.is_some() && self.is_single() && self.chunker.is_mounted_on(self.at)
     }
 
     /// "the sliding door".

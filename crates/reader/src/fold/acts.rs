@@ -33,7 +33,7 @@ pub(super) fn acts(reading: &Reading<'_>, actor: Actor) -> Vec<ActFact> {
             done: is_done(reading, frame),
             after_other: None,
             manner: manner(reading, number),
-            source: reading.of(frame),
+            source: reading.words(frame.first, reach(reading, frame, act)),
         };
         let in_passing = frame.aside && all.iter().any(|known| known.act == act);
         match all.last_mut() {
@@ -58,7 +58,79 @@ pub(super) fn acts(reading: &Reading<'_>, actor: Actor) -> Vec<ActFact> {
             _ => all.push(fact),
         }
     }
+    if reading.contacts.partner == Some(actor) {
+        with_contact(reading, actor, &mut all);
+    }
+    told_ahead(reading, &mut all);
     all
+}
+
+/// "It passed the van and went into the intersection. While passing it, it touched its mirror": of an intersection that it was only on its
+/// way into, the words are not kept.
+fn told_ahead(reading: &Reading<'_>, all: &mut [ActFact]) {
+    for at in 1..all.len().saturating_sub(1) {
+        let again = all[at - 1].act == Act::Pass && all[at + 1].act == Act::Pass && !all[at + 1].after_contact;
+        if all[at].act == Act::Enter && again {
+            all[at].source = reading.of(&reading.story.frames[all[at].step as usize]);
+        }
+    }
+}
+
+/// Words that stand before "intersection" in its name.
+const OF_INTERSECTION: [&str; 18] = [
+    "a",
+    "an",
+    "the",
+    "this",
+    "that",
+    "same",
+    "said",
+    "four",
+    "4",
+    "three",
+    "way",
+    "t",
+    "stop",
+    "sign",
+    "signalized",
+    "signal",
+    "controlled",
+    "of",
+];
+
+/// The token behind the words of an act: of who goes into or through an intersection, up to that word.
+fn reach(reading: &Reading<'_>, frame: &Frame, act: Act) -> usize {
+    let end = reading.story.sentences[frame.sentence].end;
+    let word = |at: usize| reading.story.tokens[at].text.as_str();
+    let behind =
+        (frame.end..end).find(|&at| !OF_INTERSECTION.contains(&word(at)) && !matches!(word(at), "into" | "through"));
+    match behind {
+        Some(at) if act == Act::Enter && matches!(word(at), "intersection" | "junction") => at + 1,
+        _ => frame.end,
+    }
+}
+
+/// "was rear-ended at low speed by a van", "touched its bumper at high speed": how who struck came, told with the contact itself.
+fn with_contact(reading: &Reading<'_>, actor: Actor, all: &mut Vec<ActFact>) {
+    let Some(number) = reading.contacts.first else { return };
+    let frame = &reading.story.frames[number];
+    let Some(manner) = manner(reading, number).filter(|_| frame.who == Some(actor)) else { return };
+    if let Some(last) = all.iter_mut().rfind(|fact| !fact.after_contact) {
+        last.manner = last.manner.or(Some(manner));
+        return;
+    }
+    let fact = ActFact {
+        act: Act::Follow,
+        side: None,
+        step: number as u32,
+        after_contact: false,
+        begun: false,
+        done: false,
+        after_other: None,
+        manner: Some(manner),
+        source: reading.of(frame),
+    };
+    all.insert(0, fact);
 }
 
 /// To which side an act goes: as told with it, else by the lane that it leads into or begins in, else by the column.
@@ -70,7 +142,8 @@ fn side_of(reading: &Reading<'_>, actor: Actor, frame: &Frame, act: Act) -> Opti
         LaneWord::RightTurn => Some(LeftRight::Right),
         _ => None,
     };
-    let side = if sided(act) { told() } else { None };
+    let entered = || if act == Act::LaneChange { side_of_lane_entered(reading, frame) } else { None };
+    let side = if sided(act) { told().or_else(entered) } else { None };
     side.or_else(|| into_turn_lane(reading, actor, frame, act))
         .or_else(|| if act == Act::Turn { turn_lane() } else { None })
         .or_else(|| turned_by_column(reading, actor, act))
@@ -125,10 +198,16 @@ pub(super) fn move_away(account: &mut Account) {
     }
 }
 
-/// "completed its left turn", "after it had turned".
+/// "completed its left turn", "after it had turned", "had turned".
 fn is_done(reading: &Reading<'_>, frame: &Frame) -> bool {
-    let first = reading.story.tokens.get(frame.first).map(|token| token.text.as_str()).unwrap_or_default();
-    frame.joint == Some(Joint::After) || ["complet", "finish", "exit"].iter().any(|start| first.starts_with(start))
+    let word = |at: usize| reading.story.tokens.get(at).map_or("", |token| token.text.as_str());
+    let first = word(frame.first);
+    // "A van that had made the turn before it".
+    let had = (1..3).any(|back| frame.first.checked_sub(back).is_some_and(|at| word(at) == "had"));
+    let turned = had && matches!(frame.act(), Some(Act::Turn | Act::UTurn)) && frame.progress == Progress::Real;
+    frame.joint == Some(Joint::After)
+        || turned
+        || ["complet", "finish", "exit"].iter().any(|start| first.starts_with(start))
 }
 
 /// "slowly proceeded", "approached at a high rate of speed".
@@ -146,7 +225,8 @@ fn manner(reading: &Reading<'_>, number: usize) -> Option<Manner> {
     };
     let mut words = frame.first.saturating_sub(MANNER_BEFORE).max(sentence.first)..end.min(sentence.end);
     words.find_map(|at| match word(at) {
-        "slowly" => Some(Manner::Slow),
+        // "touched the slowly moving van".
+        "slowly" if !frame.is_contact() || at < frame.first => Some(Manner::Slow),
         "speeding" if at >= frame.first => Some(Manner::Fast),
         _ if at > frame.first && speed(at, &SLOW) => Some(Manner::Slow),
         _ if at > frame.first && speed(at, &FAST) => Some(Manner::Fast),
@@ -199,6 +279,7 @@ fn act_of(reading: &Reading<'_>, number: usize, frame: &Frame, pushed: bool) -> 
     Some(match act {
         // "A dog came out from between two cars": no vehicle that leaves a place of its own.
         Act::PullOut if frame.who.is_some_and(|who| is_animal(reading, who)) => Act::Enter,
+        Act::Enter if enters_a_lane(reading, number, frame) => Act::LaneChange,
         Act::Follow | Act::SetOff | Act::Drift if comes_out => Act::PullOut,
         Act::Follow if goes_on_from_a_stand(reading, number, frame, &words) => Act::SetOff,
         Act::Follow if sets_off_with_subject(reading, frame, &words) => Act::SetOff,
@@ -208,6 +289,77 @@ fn act_of(reading: &Reading<'_>, number: usize, frame: &Frame, pushed: bool) -> 
         }
         Act::Pass if passes_nobody(reading, frame) => Act::Follow,
         act => act,
+    })
+}
+
+/// "entered the left turn lane", of who drove along before: it changed lanes. Out of a place beside the road, or from a crossing one,
+/// it comes into a lane by that.
+fn enters_a_lane(reading: &Reading<'_>, number: usize, frame: &Frame) -> bool {
+    let Some(who) = frame.who else { return false };
+    let Some((first, lane)) = lane_entered(reading, frame) else { return false };
+    let words = &reading.story.tokens[first..lane];
+    let oncoming = |token: &Token| matches!(token.text.as_str(), "oncoming" | "opposing" | "opposite" | "slip");
+    let wheels = reading.story.world.actors[who].kind.is_none_or(Kind::is_vehicle);
+    let came = |(_, before): (usize, &Frame)| {
+        matches!(before.act(), Some(Act::Follow | Act::Slow | Act::Accelerate)) && before.happened()
+    };
+    let elsewhere = |(_, before): (usize, &Frame)| {
+        let act = before.act();
+        before.out_of.is_some()
+            || matches!(
+                act,
+                Some(Act::PullOut | Act::Cross | Act::Turn | Act::UTurn | Act::Reverse | Act::Hold | Act::Pass)
+            )
+    };
+    let before = || reading.before(who).take_while(|(other, _)| *other < number);
+    // "entered the right turn lane and turned right": on its way to the turn.
+    let turns = reading.before(who).any(|(other, later)| other > number && later.act() == Some(Act::Turn));
+    let placed = !reading.story.world.actors[who].relations.is_empty();
+    let drove = before().any(came) || placed && who != SUBJECT;
+    wheels && !turns && !words.iter().any(oncoming) && drove && frame.out_of.is_none() && !before().any(elsewhere)
+}
+
+/// The tokens from a verb of entering up to the lane that is entered.
+fn lane_entered(reading: &Reading<'_>, frame: &Frame) -> Option<(usize, usize)> {
+    const NAMES: [&str; 16] = [
+        "turn",
+        "turning",
+        "bike",
+        "bicycle",
+        "bus",
+        "center",
+        "left",
+        "right",
+        "leftmost",
+        "rightmost",
+        "number",
+        "singular",
+        "adjacent",
+        "next",
+        "second",
+        "third",
+    ];
+    let word = |at: usize| reading.story.tokens[at].text.as_str();
+    let end = reading.story.sentences[frame.sentence].end.min(frame.first + LANE_WITHIN);
+    let stops =
+        |at: &usize| matches!(word(*at), "," | "and" | "intersection" | "junction" | "from" | "at" | "of" | "as");
+    let lane = (frame.first + 1..end).take_while(|at| !stops(at)).find(|&at| word(at) == "lane")?;
+    let partly = frame.first.checked_sub(1).is_some_and(|at| matches!(word(at), "partially" | "partly"));
+    let named = (frame.first..lane).any(|at| NAMES.contains(&word(at)));
+    (named && !partly).then_some((frame.first, lane))
+}
+
+/// The name of a lane that is entered is no longer, with the verb. [tokens]
+const LANE_WITHIN: usize = 10;
+
+/// The side of a lane that is entered: that of a turn lane, which lies outside, or as told behind it.
+fn side_of_lane_entered(reading: &Reading<'_>, frame: &Frame) -> Option<LeftRight> {
+    let (first, lane) = lane_entered(reading, frame)?;
+    let end = reading.story.sentences[frame.sentence].end.min(lane + 5);
+    reading.story.tokens[first..end].iter().find_map(|token| match token.text.as_str() {
+        "left" | "leftmost" => Some(LeftRight::Left),
+        "right" | "rightmost" | "bike" | "bicycle" | "bus" => Some(LeftRight::Right),
+        _ => None,
     })
 }
 
@@ -246,8 +398,13 @@ fn goes_on_from_a_stand(reading: &Reading<'_>, number: usize, frame: &Frame, wor
     // "stopped at a red light, heading west", "stopped, following a pick-up": there it stands.
     let goes_on = ["continu", "remain", "heading", "following", "traveling", "travelling", "driving"];
     let goes_on = goes_on.iter().any(|start| words.starts_with(start));
-    let stood = || last_act(reading, number, frame, |frame| !frame.aside);
-    !goes_on && frame.sense != Sense::Approach && matches!(stood(), Some(Act::Hold | Act::Stop))
+    // "It reversed, and then proceeded forward".
+    let forward = words.split([',', '.', ';']).next().is_some_and(|clause| clause.contains("forward"));
+    let stood = |act: Option<Act>| match act {
+        Some(Act::Reverse) => forward,
+        act => matches!(act, Some(Act::Hold | Act::Stop)),
+    };
+    !goes_on && frame.sense != Sense::Approach && stood(last_act(reading, number, frame, |frame| !frame.aside))
 }
 
 /// "Once the light turned green, it began to proceed, and a car behind it proceeded forward": so did that.

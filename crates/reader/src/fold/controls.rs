@@ -3,7 +3,7 @@
 use super::Reading;
 use super::acts::not_done;
 use crate::frame::Frame;
-use crate::lexicon::Sense;
+use crate::lexicon::{Form, Sense};
 use crate::token::{Token, TokenKind};
 use crate::world::{Actor, SUBJECT};
 use recrash_model::account::{Act, Control, ControlDevice, Fact, Obeyed, SignalState, Speed, SpeedMeaning};
@@ -16,6 +16,9 @@ pub(super) fn controls(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<Control>
     let mut turned_green = None;
     for (number, frame) in reading.story.frames.iter().enumerate() {
         let changes = match frame.sense {
+            Sense::LightGreen if is_of_other_lanes(reading, frame) => None,
+            // "waiting for the light to turn green": it is red.
+            Sense::LightGreen if frame.form == Form::Base && !frame.happened() => Some(SignalState::Red),
             Sense::LightGreen if was_green(reading, frame, &all) => Some(SignalState::Green),
             Sense::LightGreen => Some(SignalState::TurnedGreen),
             Sense::LightRed => Some(SignalState::TurnedRed),
@@ -45,6 +48,10 @@ pub(super) fn controls(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<Control>
             if none && !frame.negated {
                 continue;
             }
+            // "awaiting a green light": it is red.
+            let awaited = (1..4).any(|back| before(back).starts_with("await"))
+                || (2..5).any(|back| before(back).starts_with("wait") && before(back - 1) == "for");
+            let state = if awaited && state == Some(SignalState::Green) { Some(SignalState::Red) } else { state };
             let broken = match device {
                 ControlDevice::Signal => ran == Some(Act::RunRed),
                 _ => ran == Some(Act::RunStop),
@@ -88,6 +95,22 @@ fn named(words: &[&str]) -> Option<(ControlDevice, Option<SignalState>, usize)> 
         ["yield", "sign", ..] => (ControlDevice::YieldSign, None, 2),
         _ => return None,
     })
+}
+
+/// "The signal for traffic in the next lanes turned green, and the arrow of its own stayed red": not its own.
+fn is_of_other_lanes(reading: &Reading<'_>, frame: &Frame) -> bool {
+    let sentence = reading.story.sentences[frame.sentence];
+    let tokens = &reading.story.tokens;
+    let word = |at: usize| tokens[at].text.as_str();
+    let signal = (sentence.first..frame.first).rfind(|&at| matches!(word(at), "signal" | "light" | "lights"));
+    let for_traffic = signal.is_some_and(|at| {
+        word(at + 1) == "for" && (at + 2..frame.first).take(2).any(|at| matches!(word(at), "traffic" | "vehicles"))
+    });
+    let until = tokens.len().min(reading.until());
+    let stays_red = tokens[sentence.first.min(until)..until]
+        .windows(2)
+        .any(|pair| matches!(pair[0].text.as_str(), "remained" | "stayed" | "still") && pair[1].text == "red");
+    for_traffic && stays_red
 }
 
 /// Whether a light "was green", and nobody tells that it had been red.

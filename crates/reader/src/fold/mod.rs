@@ -93,6 +93,7 @@ impl Reading<'_> {
             || self.is_in_vain(frame)
             || frame.sentence > at.sentence && frame.who != Some(SUBJECT) && self.had_before(frame.sentence)
             || frame.looks_back
+            || self.is_of_having(frame) && frame.sentence == at.sentence
             || frame.aside && frame.sentence == at.sentence
         {
             return false;
@@ -113,6 +114,12 @@ impl Reading<'_> {
                     && [(other.who, other.object), (other.object, other.who)].contains(&(at.who, at.object))
             });
         !(simultaneous || retold || frame.described && frame.sentence == at.sentence)
+    }
+
+    /// "struck it, having failed to stop": told of the time before.
+    fn is_of_having(&self, frame: &Frame) -> bool {
+        let word = |back: usize| frame.first.checked_sub(back).map_or("", |at| self.story.tokens[at].text.as_str());
+        (1..4).any(|back| word(back) == "having" && word(back + 1) == ",")
     }
 
     /// "struck it, then drove off when the light changed": the clause belongs to what came of the crash.
@@ -237,6 +244,7 @@ pub fn account(incident: &Incident) -> Option<Account> {
     let contacts = Contacts::find(&story, record);
     let back = flashback::told_back(&story, &contacts);
     let reading = Reading { text, record, story, contacts, back };
+    let own_rider = hurts_its_own_rider(&reading);
     let mut account = Account {
         format: ACCOUNT_FORMAT.to_owned(),
         incident: incident.id.clone(),
@@ -252,7 +260,7 @@ pub fn account(incident: &Incident) -> Option<Account> {
         first_contact: None,
         place: place::place(&reading),
         sv: party::party(&reading, SUBJECT),
-        partner: reading.contacts.partner.map(|actor| party::party(&reading, actor)),
+        partner: reading.contacts.partner.filter(|_| !own_rider).map(|actor| party::party(&reading, actor)),
         came_from: None,
         ahead: None,
         order: None,
@@ -268,7 +276,7 @@ pub fn account(incident: &Incident) -> Option<Account> {
     if let Some(partner) = &mut account.partner {
         across::settle(&reading, &mut account.sv, partner);
     }
-    party::columns(&reading, &mut account);
+    party::columns(&reading, &mut account, own_rider);
     // A gate that swings open is no door.
     let kind = account.partner.as_ref().and_then(|partner| told(&partner.kind));
     let is_thing = kind.is_some_and(|kind| kind.group() == KindGroup::Object && kind != Kind::Door);
@@ -362,6 +370,20 @@ fn own_make(record: &CrashRecord) -> Option<String> {
 fn words_of(story: &Story) -> u32 {
     let told = story.sentences.iter().zip(&story.standing).filter(|(_, standing)| !**standing);
     told.map(|(sentence, _)| (sentence.end - sentence.first) as u32).sum()
+}
+
+/// "was in a collision involving a passenger of the AV": who rode in it, and nobody whom it met.
+fn hurts_its_own_rider(reading: &Reading<'_>) -> bool {
+    let story = &reading.story;
+    let word = |at: usize| story.tokens.get(at).map_or("", |token| token.text.as_str());
+    let company = company(reading.record);
+    let own = |at: usize| {
+        let rider = matches!(word(at), "passenger" | "occupant" | "rider") && matches!(word(at + 1), "of" | "in");
+        rider
+            && word(at + 2) == "the"
+            && (["av", "ego", "subject", "shuttle"].contains(&word(at + 3)) || word(at + 3) == company)
+    };
+    story.frames.iter().any(|frame| frame.sense == Sense::Headline && (frame.first..frame.end + 3).any(own))
 }
 
 /// Everybody else who is in the story up to the contact.

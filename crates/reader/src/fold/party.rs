@@ -6,7 +6,7 @@ use super::controls::{controls, speeds};
 use super::open::is_any_truck;
 use super::standing::{reasons, state};
 use super::state::{partner_state, sv_speed, sv_state};
-use super::touched::zones;
+use super::touched::{by_trailer, zones};
 use crate::frame::Frame;
 use crate::lexicon::Sense;
 use crate::world::{Actor, SUBJECT};
@@ -26,7 +26,7 @@ pub(crate) fn party(reading: &Reading<'_>, actor: Actor) -> Party {
     let before = |first: usize| first < end;
     let (state, standing) = state(reading, actor);
     let kind = match (known.kind, known.kind_tokens) {
-        (Some(kind), Some((first, end))) => Some(reading.told(kind, first, end)),
+        (Some(kind), Some((first, end))) => Some(reading.told(with_trailer(reading, actor, kind), first, end)),
         (Some(kind), None) => Some(Fact::of_column(kind, "Make")),
         _ => None,
     };
@@ -57,6 +57,15 @@ pub(crate) fn party(reading: &Reading<'_>, actor: Actor) -> Party {
     party
 }
 
+/// "The left side of the trailer made contact": whoever it was called before drew one.
+fn with_trailer(reading: &Reading<'_>, actor: Actor, kind: Kind) -> Kind {
+    match kind {
+        Kind::HeavyTruck if by_trailer(reading, actor) => Kind::SemiTrailerTruck,
+        Kind::Pickup if by_trailer(reading, actor) => Kind::PickupWithTrailer,
+        kind => kind,
+    }
+}
+
 /// The direction of the road that it goes into.
 fn after(reading: &Reading<'_>, actor: Actor) -> Option<Fact<Compass>> {
     let (_, frame) = reading
@@ -85,8 +94,8 @@ fn across_from(reading: &Reading<'_>, actor: Actor) -> Option<Fact<Compass>> {
     Some(reading.told(side.turned(4), at - 1, at + 1))
 }
 
-/// What only the columns tell, and the column speed; words win.
-pub(crate) fn columns(reading: &Reading<'_>, account: &mut Account) {
+/// What only the columns tell, and the column speed; words win. `alone`: there is no partner, whom the columns take for one.
+pub(crate) fn columns(reading: &Reading<'_>, account: &mut Account, alone: bool) {
     let record = reading.record;
     if let Some(mps) = record.sv_speed_mps {
         let speed = Speed { mps, meaning: SpeedMeaning::Impact };
@@ -100,7 +109,7 @@ pub(crate) fn columns(reading: &Reading<'_>, account: &mut Account) {
     let partner_told = account.partner.is_some()
         || !matches!(record.partner, Coded::Blank | Coded::Unknown)
         || !record.cp_zones.is_empty();
-    if !partner_told {
+    if alone || !partner_told {
         return;
     }
     let partner = account.partner.get_or_insert_with(Party::default);

@@ -2,7 +2,7 @@
 
 use super::Reading;
 use crate::chunk::Piece;
-use crate::frame::zone_of;
+use crate::frame::{Frame, zone_of};
 use crate::lexicon::{Relation, Sense};
 use crate::world::{Actor, SUBJECT};
 use recrash_model::account::{Fact, Kind};
@@ -52,7 +52,8 @@ pub(super) fn zones(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<ContactZone
             frame.is_contact() && frame.relations.iter().any(|(relation, _)| *relation == Relation::Behind);
         let zone = zone.or_else(|| (from_behind && frame.object == Some(actor)).then_some(ContactZone::Rear));
         if let Some(zone) = zone {
-            all.push(Fact { value: zone, source: reading.of(frame) });
+            let source = of_trailer(reading, actor, frame).map(|(first, end)| reading.words(first, end));
+            all.push(Fact { value: zone, source: source.unwrap_or_else(|| reading.of(frame)) });
         }
     }
     if all.is_empty() {
@@ -60,6 +61,42 @@ pub(super) fn zones(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<ContactZone
         all.extend(told_besides(reading, actor, first, column.is_empty()));
     }
     all
+}
+
+/// Whether it is told that the trailer of somebody touched.
+pub(super) fn by_trailer(reading: &Reading<'_>, actor: Actor) -> bool {
+    let contact = reading.contacts.first.map(|number| &reading.story.frames[number]);
+    contact.is_some_and(|frame| of_trailer(reading, actor, frame).is_some())
+}
+
+/// Words between the name of a part and "trailer", or between that and the verb, where it is the trailer's: "the left side of the long flat
+/// trailer that the truck drew".
+const OF_TRAILER_WITHIN: usize = 8;
+
+/// Words for a part of a trailer.
+const PARTS: [&str; 11] =
+    ["side", "corner", "end", "rear", "front", "back", "left", "right", "driver", "passenger", "middle"];
+
+/// The tokens of "the left side of its trailer", where that touches.
+fn of_trailer(reading: &Reading<'_>, actor: Actor, frame: &Frame) -> Option<(usize, usize)> {
+    let sentence = reading.story.sentences[frame.sentence];
+    let word = |at: usize| reading.story.tokens[at].text.as_str();
+    let (from, to) = if frame.who == Some(actor) {
+        (frame.first.saturating_sub(2 * OF_TRAILER_WITHIN).max(sentence.first), frame.first)
+    } else if frame.object == Some(actor) {
+        (frame.first, frame.end)
+    } else {
+        return None;
+    };
+    // What stands behind another clause is told of that.
+    let from = (from..to)
+        .rfind(|&at| matches!(word(at), "," | ";" | "and" | "when" | "as" | "while"))
+        .map_or(from, |at| at + 1);
+    let trailer = (from..to).rfind(|&at| word(at) == "trailer")?;
+    let part = |at: &usize| PARTS.contains(&word(*at));
+    let first = (trailer.saturating_sub(OF_TRAILER_WITHIN).max(from)..trailer).find(part)?;
+    let article = first.checked_sub(1).filter(|at| *at >= from && matches!(word(*at), "the" | "its" | "a"));
+    (to - trailer <= OF_TRAILER_WITHIN).then(|| (article.unwrap_or(first), trailer + 1))
 }
 
 /// Where somebody was touched by what the sentence of the crash says of the damage, or the headline of a rear-end crash.

@@ -3,9 +3,9 @@
 use super::Reading;
 use super::origin::{Clues, first_relation, side_of_lane, side_of_road_of};
 use crate::frame::{Frame, zone_of};
-use crate::lexicon::{Relation, Sense};
+use crate::lexicon::{Form, Relation, Sense};
 use crate::world::{Actor, SUBJECT};
-use recrash_model::account::{Act, Fact, KindGroup, LaneWord, LeftRight, Origin};
+use recrash_model::account::{Act, Fact, Kind, KindGroup, LaneWord, LeftRight, Origin, Source};
 
 /// Where somebody else is: as told; else in its lane, beside that of the subject vehicle, or by the directions of the two.
 pub(crate) fn place_of(reading: &Reading<'_>, actor: Actor) -> Option<Fact<Origin>> {
@@ -21,20 +21,141 @@ pub(crate) fn place_of(reading: &Reading<'_>, actor: Actor) -> Option<Fact<Origi
     let relation = relation.filter(|relation| {
         !matches!(relation, Relation::Left | Relation::Right) || !reading.story.frames.iter().any(passed)
     });
-    let value = match relation {
-        Some(Relation::Behind) => Some(Origin::Behind),
-        Some(Relation::Ahead) => Some(Origin::Ahead),
-        Some(Relation::Left) => Some(Origin::Beside { side: LeftRight::Left }),
-        Some(Relation::Right) => Some(Origin::Beside { side: LeftRight::Right }),
-        Some(Relation::Opposite) => Some(Origin::Opposite),
-        Some(Relation::Same | Relation::Beside) | None => None,
-    };
+    let value = relation.and_then(origin_of);
     let told = value.zip(relation).map(|(value, relation)| Fact { value, source: clues.has(relation) });
     told.or_else(|| behind_partner(reading, actor))
         .or_else(|| in_queue(&clues))
         .or_else(|| in_other_lane(&clues))
         .or_else(|| by_directions(&clues))
         .or_else(|| at_side_of_road(&clues))
+        .or_else(|| told_afterwards(&clues))
+        .or_else(|| stops_in_its_lane(&clues))
+        .or_else(|| approached(&clues))
+        .or_else(|| by_another(&clues))
+        .or_else(|| in_queue_of_partner(&clues))
+        .or_else(|| in_next_lane(&clues))
+}
+
+/// The place that a relation to the subject vehicle tells.
+const fn origin_of(relation: Relation) -> Option<Origin> {
+    match relation {
+        Relation::Behind => Some(Origin::Behind),
+        Relation::Ahead => Some(Origin::Ahead),
+        Relation::Left => Some(Origin::Beside { side: LeftRight::Left }),
+        Relation::Right => Some(Origin::Beside { side: LeftRight::Right }),
+        Relation::Opposite => Some(Origin::Opposite),
+        Relation::Same | Relation::Beside => None,
+    }
+}
+
+/// "It struck a dog. A van traveling behind it then struck it too": told behind the crash, the van had been there before it.
+fn told_afterwards(clues: &Clues<'_>) -> Option<Fact<Origin>> {
+    let (reading, actor) = (clues.reading, clues.actor);
+    let story = &reading.story;
+    let known = &story.world.actors[actor];
+    let contact = story.frames[reading.contacts.first?].sentence;
+    known.relations.iter().filter(|(_, sentence)| *sentence > contact).find_map(|(relation, sentence)| {
+        let value = origin_of(*relation)?;
+        let told = |frame: &&Frame| {
+            frame.who == Some(actor)
+                && frame.sentence == *sentence
+                && frame.relations.iter().any(|(other, _)| other == relation)
+        };
+        let drives = |frame: &Frame| frame.form == Form::Ing && frame.act() == Some(Act::Follow) && frame.happened();
+        // "A bus then stopped behind it": it came up from there.
+        let comes_up =
+            |frame: &Frame| *relation == Relation::Behind && frame.act() == Some(Act::Stop) && frame.happened();
+        match story.frames.iter().find(told) {
+            Some(frame) => (drives(frame) || comes_up(frame)).then(|| Fact { value, source: reading.of(frame) }),
+            // "A van directly ahead of it swerved".
+            None => {
+                let (first, end) = known.kind_tokens.filter(|(first, _)| *first >= story.sentences[*sentence].first)?;
+                Some(reading.told(value, first, end))
+            }
+        }
+    })
+}
+
+/// "It slowed for a van that had come along in the same lane and stopped there": the van is ahead.
+fn stops_in_its_lane(clues: &Clues<'_>) -> Option<Fact<Origin>> {
+    let (reading, actor) = (clues.reading, clues.actor);
+    let actors = &reading.story.world.actors;
+    let ((own, ..), (lane, first, end)) = (actors[SUBJECT].lane?, actors[actor].lane?);
+    let stays = !reading.did(SUBJECT, Act::LaneChange) && !reading.did(SUBJECT, Act::Turn);
+    let stops = reading.did(actor, Act::Stop) || reading.did(actor, Act::Hold);
+    let reacts = |(_, frame): (usize, &Frame)| {
+        let slows = matches!(frame.act(), Some(Act::Stop | Act::Slow | Act::Hold));
+        frame.object == Some(actor) && (slows || matches!(frame.sense, Sense::Yield | Sense::Approach))
+    };
+    let met = own == lane && stays && stops && reading.before(SUBJECT).any(reacts);
+    met.then(|| reading.told(Origin::Ahead, first, end))
+}
+
+/// "It approached a truck traveling slowly": which drives ahead, and which it does not go past.
+fn approached(clues: &Clues<'_>) -> Option<Fact<Origin>> {
+    let (reading, actor) = (clues.reading, clues.actor);
+    let known = &reading.story.world.actors[actor];
+    let (first, end) = known.kind_tokens?;
+    let met = |frame: &Frame| frame.object == Some(actor) && frame.happened();
+    let (number, _) = reading.before(SUBJECT).find(|(_, frame)| frame.sense == Sense::Approach && met(frame))?;
+    let passes = reading.before(SUBJECT).any(|(_, frame)| frame.act() == Some(Act::Pass) && met(frame));
+    let drives = |(other, frame): (usize, &Frame)| {
+        other == number + 1 && frame.form == Form::Ing && frame.act() == Some(Act::Follow)
+    };
+    let along = !known.several && known.kind.is_some_and(Kind::is_vehicle) && reading.before(actor).any(drives);
+    (along && !passes).then(|| reading.told(Origin::Ahead, first, end))
+}
+
+/// "a line of cars behind the truck": where the truck is.
+fn by_another(clues: &Clues<'_>) -> Option<Fact<Origin>> {
+    let (reading, actor) = (clues.reading, clues.actor);
+    let known = &reading.story.world.actors[actor];
+    let (first, end) = known.kind_tokens?;
+    known.seen_from.iter().find_map(|(relation, other)| {
+        let value = first_place(reading, *other)?;
+        let there = match (relation, value) {
+            (Relation::Behind | Relation::Ahead, Origin::Opposite | Origin::Cross { .. }) => true,
+            (Relation::Behind, Origin::Behind) | (Relation::Ahead, Origin::Ahead) => true,
+            // Of two that touched behind it, both are.
+            (Relation::Ahead, Origin::Behind) => true,
+            _ => false,
+        };
+        there.then(|| reading.told(value, first, end))
+    })
+}
+
+/// Where another is by what is told of itself alone.
+fn first_place(reading: &Reading<'_>, actor: Actor) -> Option<Origin> {
+    let clues = Clues { reading, actor };
+    let told = first_relation(&clues).and_then(origin_of);
+    told.or_else(|| by_directions(&clues).map(|fact| fact.value))
+        .or_else(|| behind_partner(reading, actor).map(|fact| fact.value))
+}
+
+/// The queue in which the partner stands, in the lane beside the subject vehicle, is there too.
+fn in_queue_of_partner(clues: &Clues<'_>) -> Option<Fact<Origin>> {
+    let reading = clues.reading;
+    let partner = reading.contacts.partner?;
+    let (first, end) = queue_of(reading, clues.actor)?;
+    let value = in_next_lane(&Clues { reading, actor: partner })?.value;
+    held_in(reading, partner, first, end).then(|| reading.told(value, first, end))
+}
+
+/// "a truck in the adjacent lane": beside it, though nobody tells on which side. Who comes over from there goes to the other side; of
+/// a kerb the lanes are on the left.
+fn in_next_lane(clues: &Clues<'_>) -> Option<Fact<Origin>> {
+    let (reading, actor) = (clues.reading, clues.actor);
+    let drives = reading.story.world.actors[actor].kind.is_some_and(Kind::is_vehicle);
+    let words = match clues.has(Relation::Beside) {
+        Source::Words { text, .. } => text.to_lowercase(),
+        _ => return None,
+    };
+    let lane = ["adjacent lane", "next lane", "neighboring lane"].iter().any(|name| words.contains(name));
+    let next = drives && clues.any(Relation::Beside) && lane;
+    let comes = reading.before(actor).find(|(_, frame)| frame.side.is_some()).and_then(|(_, frame)| frame.side);
+    let side = comes.map_or(LeftRight::Left, LeftRight::other);
+    let rule = "in the next lane, on a side that is assumed where no word tells it";
+    next.then(|| Fact::by_rule(Origin::Beside { side }, rule))
 }
 
 /// "a man standing on the south side of the road": left of who goes west.
@@ -66,20 +187,32 @@ fn behind_partner(reading: &Reading<'_>, actor: Actor) -> Option<Fact<Origin>> {
 
 /// The queue in which the subject vehicle stands is ahead of it.
 fn in_queue(clues: &Clues<'_>) -> Option<Fact<Origin>> {
-    let story = &clues.reading.story;
-    let (first, end) = story.world.actors[clues.actor].kind_tokens?;
+    let (from, end) = queue_of(clues.reading, clues.actor)?;
+    let held = held_in(clues.reading, SUBJECT, from, end);
+    held.then(|| clues.reading.told(Origin::Ahead, from, end))
+}
+
+/// The tokens of somebody who is called a queue: "a queue of traffic".
+fn queue_of(reading: &Reading<'_>, actor: Actor) -> Option<(usize, usize)> {
+    let story = &reading.story;
+    let (first, end) = story.world.actors[actor].kind_tokens?;
     let from = first.checked_sub(2)?;
     let queue = ["queue", "line"].contains(&story.tokens[from].text.as_str()) && story.tokens[from + 1].text == "of";
+    queue.then_some((from, end))
+}
+
+/// Whether somebody is told to stand in the queue that is named by these tokens.
+fn held_in(reading: &Reading<'_>, who: Actor, from: usize, end: usize) -> bool {
+    let story = &reading.story;
     let stands = |frame: &Frame| {
         let sentence = story.sentences[frame.sentence];
-        let stands = matches!(frame.act(), Some(Act::Hold | Act::Stop)) && frame.who == Some(SUBJECT);
+        let stands = matches!(frame.act(), Some(Act::Hold | Act::Stop)) && frame.who == Some(who);
         stands
-            && frame.first < first
-            && first < sentence.end
-            && !story.frames.iter().any(|other| between(frame, other, first))
+            && frame.first < from + 2
+            && end <= sentence.end
+            && !story.frames.iter().any(|other| between(frame, other, from + 2))
     };
-    let held = queue && story.frames.iter().any(stands);
-    held.then(|| clues.reading.told(Origin::Ahead, from, end))
+    story.frames.iter().any(stands)
 }
 
 /// Whether a frame of somebody else stands between another frame and a token.

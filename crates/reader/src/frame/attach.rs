@@ -4,9 +4,9 @@ use super::parser::{Carry, Parser};
 use super::row::acts;
 use super::sided;
 use crate::chunk::{Chunk, Piece, Placed, Spot};
-use crate::lexicon::{Part, Relation, Sense};
+use crate::lexicon::{Form, Part, Relation, Sense};
 use crate::world::{Actor, SUBJECT};
-use recrash_model::account::{Act, Compass, LaneWord, LeftRight};
+use recrash_model::account::{Act, Compass, Kind, LaneWord, LeftRight};
 
 impl Parser<'_> {
     /// A part whose owner is not said: "made contact with the rear bumper".
@@ -43,11 +43,11 @@ impl Parser<'_> {
             }
             // "stopped behind a van": who stopped. "yield to a car ahead of the van": the car.
             let of_object = carry.last.is_some() && (fell_off || carry.governed_object(&self.frames[frame]));
-            if of_object {
+            if of_object || self.is_of_passed(to, carry) {
                 who = carry.last.as_ref().map(|last| last.actor);
             } else {
                 self.frames[frame].relations.push((relation, to));
-                who = self.frames[frame].who;
+                who = self.frames[frame].who.or_else(|| self.drives_there(&self.frames[frame], carry));
             }
         } else if let Some(subject) = &carry.subject {
             who = Some(subject.actor);
@@ -113,15 +113,37 @@ impl Parser<'_> {
                 };
                 self.note(other, turned);
             }
+            Some(other) if who != SUBJECT && who != other => {
+                self.world.actors[who].seen_from.push((relation, other));
+            }
             _ => {}
         }
+    }
+
+    /// "Tires fell off a trailer pulled by a van traveling ahead of it": of tires the sentence is, and the van travels there.
+    fn drives_there(&self, frame: &super::Frame, carry: &Carry) -> Option<Actor> {
+        let last = carry.last.as_ref().filter(|last| last.end == frame.first && last.piece.is_none())?;
+        let drives = self.world.actors[last.actor].kind.is_some_and(Kind::is_vehicle);
+        (carry.stranger && drives && frame.form == Form::Ing && frame.act() == Some(Act::Follow)).then_some(last.actor)
+    }
+
+    /// "passing a line of cars behind the truck": the cars are, where the truck is none of the two.
+    fn is_of_passed(&self, to: Option<Actor>, carry: &Carry) -> bool {
+        let (Some(frame), Some(last), Some(to)) = (carry.frame, &carry.last, to) else { return false };
+        let frame = &self.frames[frame];
+        let third = to != SUBJECT && to != last.actor && frame.who != Some(to);
+        third && frame.act() == Some(Act::Pass) && frame.object == Some(last.actor) && last.actor != SUBJECT
     }
 
     /// Whether something is told to fall off the vehicle that was named last.
     fn fell_off_last(&self, carry: &Carry) -> bool {
         let (Some(frame), Some(last)) = (carry.frame, &carry.last) else { return false };
         let frame = &self.frames[frame];
-        frame.act() == Some(Act::Fall)
+        // "came out from under the van ahead of it".
+        let under = self.tokens[frame.first..last.end.max(frame.first)]
+            .iter()
+            .any(|token| matches!(token.text.as_str(), "under" | "underneath" | "beneath"));
+        (frame.act() == Some(Act::Fall) || frame.act() == Some(Act::Enter) && under)
             && carry.governed
             && frame.who != Some(last.actor)
             && self.world.actors[last.actor].kind.is_some_and(|kind| kind.is_vehicle())
@@ -164,7 +186,10 @@ impl Parser<'_> {
             || (last == "behind" && placed.end == placed.first + 1);
         let of_street = (placed.first..placed.end).any(|at| self.tokens[at].text == "side")
             && self.tokens.get(placed.end).is_some_and(|next| next.capital);
-        if needs_noun && matches!(next, Some(Chunk::Word)) && !self.of_road(placed.end) && !of_street {
+        // "passing on the left of a line of cars": the side on which it passes.
+        let passes = carry.frame.is_some_and(|frame| self.frames[frame].act() == Some(Act::Pass));
+        let row = last == "of" && passes && self.is_row(placed.end);
+        if needs_noun && matches!(next, Some(Chunk::Word)) && !self.of_road(placed.end) && !of_street && !row {
             return;
         }
         // "to the left" is a side of what is done there, or a place.
@@ -220,6 +245,13 @@ impl Parser<'_> {
         } else {
             self.relate(relation, None, carry);
         }
+    }
+
+    /// "a line of cars".
+    fn is_row(&self, at: usize) -> bool {
+        let word = |at: usize| self.tokens.get(at).map_or("", |token| token.text.as_str());
+        let at = at + usize::from(matches!(word(at), "a" | "the"));
+        matches!(word(at), "line" | "row" | "queue" | "column" | "string") && word(at + 1) == "of"
     }
 
     /// "on the left side of the roadway".

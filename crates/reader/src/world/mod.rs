@@ -37,6 +37,8 @@ pub struct Known {
     pub announced: bool,
     /// Where it is, seen from the subject vehicle, and the sentence that says so.
     pub relations: Vec<(Relation, usize)>,
+    /// Where it is, seen from another than the subject vehicle.
+    pub seen_from: Vec<(Relation, Actor)>,
     /// Direction first told, with its tokens.
     pub heading: Option<(Compass, usize, usize)>,
     /// Lane first told, with its tokens.

@@ -3,6 +3,7 @@
 //! places given to the wrong one.
 
 use crate::common::{self, account_of, facts};
+use recrash_model::account::{Act, Source};
 use recrash_model::kinds::PartnerKind;
 use recrash_model::record::Coded;
 use recrash_model::template::Movement;
@@ -65,13 +66,33 @@ fn every_told_fact_stands_in_the_narrative() {
 }
 
 #[test]
+fn the_words_of_an_entry_name_the_intersection() {
+    let entry = |text: &str| {
+        let account = account_of(text).expect("an account");
+        let partner = account.partner.expect("a partner");
+        let fact = partner.acts.iter().find(|fact| fact.act == Act::Enter).expect("it enters").clone();
+        match fact.source {
+            Source::Words { text, .. } => text,
+            other => panic!("{other:?}"),
+        }
+    };
+    let into = "The AV was stopped at a red light. A sedan coming from the left proceeded into the four-way intersection and its front made \
+                contact with the left side of the AV.";
+    assert_eq!(entry(into), "proceeded into the four-way intersection");
+    // It had only gone by, and was on its way there, when it touched.
+    let passing = "The AV was stopped at a red light. A sedan behind the AV passed the AV on the left and proceeded into the intersection. \
+                   While passing the AV, the right side of the sedan made contact with the left side of the AV.";
+    assert_eq!(entry(passing), "proceeded into");
+}
+
+#[test]
 fn a_turn_lane_is_gone_over_to_where_the_column_says_so() {
     let text = "The AV was traveling in the rightmost lane. While the AV proceeded into the right turn lane, an SUV approached the AV \
                 from behind, and the front of the SUV made contact with the rear of the AV.";
     let mut record = common::record("1-1", 1, text);
     record.sv_movement = Coded::Known(Movement::ChangingLanes);
     let account = recrash_reader::account(&recrash_reader::incidents(&[record])[0]).expect("an account");
-    assert_eq!(facts(&account)["sv_acts"], "follow enter_right");
+    assert_eq!(facts(&account)["sv_acts"], "follow lane_change_right");
 }
 
 /// The facts of a narrative beside these columns.

@@ -53,6 +53,10 @@ const TRAILER: &str = "The AV was traveling north on a narrow street when it cam
                        truck passed the stationary AV, the left side of the heavy truck's trailer made contact with the rear left side \
                        of the AV.";
 
+const TRAILER_OF_TRUCK: &str = "The AV was traveling north on a narrow street when it came to a stop to yield to an oncoming heavy truck. As the \
+                                heavy truck passed the stationary AV, the left side of the flat trailer attached to the heavy truck made \
+                                contact with the rear left side of the AV.";
+
 /// The stories of this file, as they are shown.
 pub fn shown() -> Vec<(String, Account, Reconstruction)> {
     let texts =
@@ -240,14 +244,15 @@ fn who_threw_the_partner_is_of_the_told_kind() {
 
 #[test]
 fn a_trailer_that_touched_touches_and_who_draws_it_gets_by() {
-    let account = story(TRAILER);
-    let shown = made(&account);
-    let (step, actors) = (before_contact(&shown) + 1, &shown.rollout.actors);
-    let trailer = actors.iter().find(|track| track.id == "cp.trailer").expect("a trailer");
-    let tractor = actors.iter().find(|track| track.id == "cp").expect("who draws it");
-    let ego = shown.rollout.ego_track();
-    assert!(trailer.outline(step).overlaps(&ego.outline(step)));
-    assert!((0..=step).all(|step| !tractor.outline(step).overlaps(&ego.outline(step))));
+    for text in [TRAILER, TRAILER_OF_TRUCK] {
+        let shown = made(&story(text));
+        let (step, actors) = (before_contact(&shown) + 1, &shown.rollout.actors);
+        let trailer = actors.iter().find(|track| track.id == "cp.trailer").expect("a trailer");
+        let tractor = actors.iter().find(|track| track.id == "cp").expect("who draws it");
+        let ego = shown.rollout.ego_track();
+        assert!(trailer.outline(step).overlaps(&ego.outline(step)));
+        assert!((0..=step).all(|step| !tractor.outline(step).overlaps(&ego.outline(step))));
+    }
 }
 
 #[test]

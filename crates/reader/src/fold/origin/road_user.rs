@@ -132,8 +132,12 @@ impl<'a> Case<'a> {
         };
         let parked = case.frames().any(|(_, frame)| frame.sense == Sense::Parked);
         case.parked |= parked;
-        // After a turn that is done, its new direction counts.
-        let turned = if turning(&account.sv) { None } else { account.sv.heading_after.as_ref() };
+        // After a turn that is done, its new direction counts. That of a lane for turns, in which it drove, tells of no turn.
+        let turned = |fact: &&recrash_model::account::ActFact| {
+            !fact.after_contact && !fact.begun && matches!(fact.act, Act::Turn | Act::UTurn)
+        };
+        let turned = account.sv.acts.iter().any(|fact| turned(&fact)) && !turning(&account.sv);
+        let turned = account.sv.heading_after.as_ref().filter(|_| turned);
         let own = turned.map(|fact| fact.value).or_else(|| after_its_turn(account));
         // Who faces one way and goes backwards comes from there.
         let backs_from = case.did(Act::Reverse) && faces_only(reading, actor);
