@@ -7,7 +7,8 @@ use crate::phases::Phase as Step;
 use crate::side::{Side, Turning};
 use crate::told::Told;
 use recrash_model::account::{
-    ContactState, Control as Said, ControlDevice, LeftRight, Obeyed, Origin, SignalState, StandReason,
+    Act, ActFact, ContactState, Control as Said, ControlDevice, LeftRight, Obeyed, Origin, Party, SignalState, Source,
+    StandReason,
 };
 use recrash_model::geometry::Vec2;
 use recrash_model::metrics::CheckResult;
@@ -100,7 +101,9 @@ pub(crate) fn devices(told: &Told, ground: &Ground, ego: &ActorPlan, actors: &[A
         // Who stood ahead, set off, and backs since did the first because it was green.
         let stood = told.cp.phases.starts_with(&[Step::Stands, Step::Drives]) && told.origin == Origin::Ahead;
         let backed = actors.iter().filter(|actor| stood && actor.id == "cp").filter_map(|actor| goes_s(&actor.plan));
-        let of_queue = others.chain([ego]).filter_map(sets_off_s).chain(backed);
+        // Nor did an ego that stands again when it turns green.
+        let own = Some(ego).filter(|_| !told.green_late);
+        let of_queue = others.chain(own).filter_map(sets_off_s).chain(backed);
         let first_s = of_queue.filter(|_| is_ego).reduce(f64::min);
         // Who sets off behind an ego that has yet to come to a stand, and stays, does not do so because it is green.
         let stays_s = halts(ego).pop().filter(|halt| halt.is_last && halt.stands_s < told.contact_s);
@@ -253,6 +256,20 @@ fn goes_s(plan: &ActorPlan) -> Option<f64> {
         Some(Trigger::TimeS(time_s)) => Some(time_s),
         _ => None,
     })
+}
+
+/// Whether the ego's light is told to have turned green behind a stop to which it came after it had set off.
+pub(crate) fn turns_green_late(sv: &Party) -> bool {
+    let begins = |source: &Source| match source {
+        Source::Words { start, .. } => Some(*start),
+        _ => None,
+    };
+    let stop = sv.acts.iter().rfind(|fact| fact.act == Act::Stop && !fact.after_contact);
+    let moved_up = |stop: &&ActFact| sv.acts.iter().any(|fact| fact.act == Act::SetOff && fact.step < stop.step);
+    let green = sv.controls.iter().find(|fact| fact.value.state == Some(SignalState::TurnedGreen));
+    let at =
+        green.and_then(|fact| begins(&fact.source)).zip(stop.filter(moved_up).and_then(|fact| begins(&fact.source)));
+    at.is_some_and(|(green, stop)| stop < green)
 }
 
 /// A signal has turned green so long before the ego that waited for it sets off. [s]

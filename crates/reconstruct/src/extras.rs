@@ -8,7 +8,7 @@ use crate::side::{Turning, size_of as size_of_kind};
 use crate::speeds::WALKS_MPS;
 use crate::told::Told;
 use crate::touch::{Staging, size_of};
-use recrash_model::account::{ContactState, ControlDevice, LaneWord, LeftRight};
+use recrash_model::account::{ContactState, ControlDevice, LaneWord, LeftRight, Origin};
 use recrash_model::geometry::{Pose, Vec2};
 use recrash_model::kinds::PartnerKind;
 use recrash_model::math;
@@ -66,6 +66,9 @@ const ROUND_AHEAD_M: f64 = 6.0;
 /// Who goes round somebody has left its line by so much, and leaves so much room beside it. [m]
 const BESIDE_M: f64 = 2.4;
 const ROOM_BESIDE_M: f64 = 0.6;
+
+/// Who passes between two has so much room beside the one that it does not touch. [m]
+const BETWEEN_M: f64 = 0.6;
 
 /// Whom the partner passes before it comes in, it has passed so long before the contact, so far beside. [steps, m]
 const PASSED_BEFORE: usize = 35;
@@ -164,6 +167,7 @@ impl Scene<'_> {
             Role::Blocker => self.blocker(length_m).into_iter().collect(),
             Role::Beyond => self.beyond(length_m).into_iter().collect(),
             Role::Merger => vec![self.merger(extra, length_m)],
+            Role::Beside if extra.between => vec![self.passed_between(extra, (length_m, width_m))],
             Role::Beside => vec![self.stands_beside(extra, length_m)],
             Role::Backer => vec![self.backer(extra, (length_m, width_m))],
             Role::Abreast => vec![self.abreast(extra)],
@@ -243,7 +247,8 @@ impl Scene<'_> {
         let stand = stood_behind(extra, self.ego, self.until);
         let (step, room_m) = stand.map_or_else(|| self.stops(), |(from, _)| (from, 0.0));
         let (s_m, _) = self.at(step);
-        let behind_m = self.queue_m(s_m).unwrap_or_else(|| self.front_m() + room_m);
+        let at_kerb = self.told.is_at_kerb() && self.ground.stands_m != 0.0;
+        let behind_m = self.queue_m(s_m, at_kerb).unwrap_or_else(|| self.front_m() + room_m);
         let ahead_m = behind_m + LEAD_GAP_M + 0.5 * length_m;
         let pose = match self.told.sv_aside() {
             // In the lane, or in that into which the ego changes.
@@ -252,6 +257,8 @@ impl Scene<'_> {
                 let lane_m = if changes { aside.to_t_m } else { 0.0 };
                 self.ground.pose(s_m + ahead_m + ROOM_M, lane_m)
             }
+            // In the lane beside one at the kerb.
+            None if at_kerb => self.ground.pose(s_m + ahead_m, 0.0),
             None => self.ahead(step, ahead_m),
         };
         // Before the light.
@@ -282,9 +289,10 @@ impl Scene<'_> {
         Some(ActorPlan { course, acts, ..ActorPlan::standing(at(-up_m)) })
     }
 
-    /// From the ego to the front of a partner that stands in the queue ahead of it. [m]
-    fn queue_m(&self, s_m: f64) -> Option<f64> {
-        let track = self.partner.filter(|_| waits_ahead(self.told))?;
+    /// From the ego to the front of a partner that stands in the queue ahead of it, or beside it at the kerb. [m]
+    fn queue_m(&self, s_m: f64, at_kerb: bool) -> Option<f64> {
+        let beside = at_kerb && matches!(self.told.origin, Origin::Beside { .. });
+        let track = self.partner.filter(|_| waits_ahead(self.told) || beside)?;
         let farthest = track.states[..=self.until].iter().map(|state| self.ground.beside(state.position()).0);
         Some(farthest.fold(s_m, f64::max) - s_m + 0.5 * track.length_m)
     }
@@ -538,6 +546,27 @@ impl Scene<'_> {
         let stands_m = self.hides_m(t_m, length_m).or_else(|| self.partner.and_then(there)).unwrap_or(s_m);
         let pose = self.ground.pose(stands_m, t_m);
         ActorPlan::standing(Place::at(pose.position.x, pose.position.y, pose.heading.to_degrees()))
+    }
+
+    /// Who stands abreast of the ego, and leaves a partner that passes between the two the room that it takes.
+    fn passed_between(&self, extra: &Extra, (length_m, width_m): (f64, f64)) -> ActorPlan {
+        let usual = self.told.comes_from_side().or_else(|| self.partner_from()).unwrap_or(LeftRight::Right);
+        let sign = if extra.side.unwrap_or(usual) == LeftRight::Right { 1.0 } else { -1.0 };
+        let (s_m, t_m) = self.at(self.until);
+        let taken_m = |track: &ActorTrack| {
+            let outlines = (0..=self.until.min(track.states.len() - 1)).map(|step| track.outline(step));
+            let abreast = outlines.filter(|outline| {
+                let along_m = (self.ground.beside(outline.centre).0 - s_m).abs();
+                along_m < 0.5 * (track.length_m + length_m) + LEAD_GAP_M
+            });
+            let edges = abreast.flat_map(|outline| outline.corners().map(|corner| self.ground.beside(corner).1));
+            edges.map(|edge_m| sign * (edge_m - t_m)).fold(0.0, f64::max)
+        };
+        let room_m = self.partner.map_or(0.0, taken_m) + BETWEEN_M + 0.5 * width_m;
+        let pose = self.ground.pose(s_m, t_m + sign * room_m.max(LANE_M));
+        // Beside one that comes towards the ego it stands as that drives.
+        let turned_deg = if self.told.origin == Origin::Opposite { 180.0 } else { 0.0 };
+        ActorPlan::standing(Place::at(pose.position.x, pose.position.y, pose.heading.to_degrees() + turned_deg))
     }
 
     /// Who drives in the next lane as the ego does, a little ahead.

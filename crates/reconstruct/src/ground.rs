@@ -184,8 +184,8 @@ pub(crate) fn ground_for(told: &Told) -> Ground {
         let behind_m: &[f64] = match (told.edge, told.lies) {
             (Some(_), _) => &BEHIND_ENTRY_M,
             (None, Some(Lies::Edge)) => &[0.0],
-            // At the end of the space that it turned into.
-            _ if told.stands_across() => &BEHIND_ENTRY_M,
+            // At the end of the space that it turned into, or across the entrance.
+            _ if told.stands_across() || told.at_entrance => &BEHIND_ENTRY_M,
             _ => &[],
         };
         let turns = matches!(told.sv.turning, Turning::Left | Turning::Right);
@@ -474,6 +474,7 @@ fn junction(told: &Told, crossing: bool) -> Ground {
     let parks = at_kerb
         || told.stands_beside(false)
         || has(told, Role::Kerb)
+        || told.extras.iter().any(|extra| extra.between)
         || told.crossed_near && told.cp.state == ContactState::Parked;
     let usual: &[StripKind] = if parks { &[StripKind::Parking, StripKind::Sidewalk] } else { &[StripKind::Sidewalk] };
     // Of the partner's road, on both sides of the junction.

@@ -24,6 +24,12 @@ const OUT_M: f64 = 1.0;
 const ASIDE_M: f64 = 0.4;
 const ACROSS_M: f64 = 2.0;
 
+/// The ego has left its line by this; what is told beside is so before the contact at the earliest; and who waits opposite is no farther
+/// behind. [rad, steps, m]
+const LEAVES_RAD: f64 = 0.1;
+const LAST_STEPS: usize = 40;
+const GONE_BY_M: f64 = 5.0;
+
 /// What somebody near is told to do.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Does {
@@ -173,6 +179,11 @@ impl Near {
         Some(Self { place, across, does, also, number })
     }
 
+    /// The same of one that drives ahead of the ego.
+    pub(crate) const fn ahead(self) -> Self {
+        Self { place: Some(Origin::Ahead), does: Does::Drives, ..self }
+    }
+
     /// Whether somebody near moves while the ego stands, and is ahead of it then.
     pub(crate) fn is_waited_for(ego: &ActorTrack, track: &ActorTrack, until: usize) -> bool {
         let way = Vec2::from_heading(ego.states[0].heading);
@@ -212,7 +223,8 @@ impl Near {
 }
 
 impl Near {
-    /// Whether somebody is near the ego up to the contact, where it is told, and does what is told.
+    /// Whether somebody near does what is told, and is near the ego and where it is told while that does what is told with it: from where the
+    /// ego leaves its line or its speed, and in the last seconds before the contact.
     pub(crate) fn holds(self, ego: &ActorTrack, track: &ActorTrack, until: usize) -> bool {
         let state = |step: usize| &track.states[step.min(track.states.len() - 1)];
         let mps = |step: usize| state(step).velocity().length();
@@ -249,6 +261,9 @@ impl Near {
             near(step) && placed
         };
         let stays_ahead = self.place != Some(Origin::Ahead) || seen(until).0 > 0.0;
+        // Who waits opposite, or slows there, has not long gone by when the two touch.
+        let waits = self.place == Some(Origin::Opposite) && matches!(self.does, Does::Slows | Does::Stands);
+        let waits_yet = !waits || seen(until).0 > -half_m - GONE_BY_M;
         let drove = state(0).position().distance(state(until).position()) > DROVE_M;
         // To the left of where it was at first, along the road.
         let aside_m = |step: usize| ahead.cross(state(step).position() - state(0).position());
@@ -292,8 +307,22 @@ impl Near {
                 facing(0) > 2.0 && turned > 0.7 && crossed
             }
         };
-        stays_ahead && done(self.does) && self.also.is_none_or(done) && (0..=until).any(there)
+        let does = done(self.does) && self.also.is_none_or(done);
+        stays_ahead && waits_yet && does && (acts_from(ego, until)..=until).any(there)
     }
+}
+
+/// From where the ego leaves its line or its speed, and no later than so long before the contact. [steps]
+fn acts_from(ego: &ActorTrack, until: usize) -> usize {
+    let first = &ego.states[0];
+    let along = Vec2::from_heading(first.heading);
+    let acts = |step: &usize| {
+        let state = &ego.states[*step];
+        let turned = math::wrap_angle(state.heading - first.heading).abs() > LEAVES_RAD;
+        let aside = along.cross(state.position() - first.position()).abs() > ASIDE_M;
+        turned || aside || (state.velocity().length() - first.velocity().length()).abs() > SLOWED_MPS
+    };
+    (0..until).find(acts).unwrap_or(until).min(until.saturating_sub(LAST_STEPS))
 }
 
 /// Whether an act of somebody who is near may be seen before the contact: that it did not yield is no way of its own.

@@ -49,6 +49,12 @@ const BACKS_MPS2: f64 = 1.0;
 const CHANGES_S: f64 = 3.5;
 const CHANGED_BEFORE_S: f64 = 0.5;
 
+/// Who comes along and stands at the contact drives as far as in this share of the time at its speed. [-]
+const COMES_SHARE: f64 = 0.7;
+
+/// What fell off somebody begins so far behind it. [m]
+const RIGHT_BEHIND_M: f64 = 0.7;
+
 /// Who makes room for somebody between it and the ego is so far over in its lane. [m]
 const FAR_OVER_M: f64 = 0.9;
 
@@ -149,26 +155,8 @@ pub(crate) fn with_near(
             continue;
         }
         let Some(scene) = Scene::of(told, ground, &rollout) else { break };
-        // Whom the ego gave way to, it stood for, if it may.
-        let gives_way = extra.awaited && extra.near.is_some() && told.reasons.contains(&StandReason::Yield);
-        let actors = scene.actors(extra);
-        let place = |actor: Actor, waits: bool| {
-            let mut with = draft.clone();
-            with.actors.push(actor);
-            let recorded = with.ego.recorded.clone()?;
-            with.control = control::devices(told, ground, &recorded, &with.actors);
-            let scenario = check_on(with, Some(&ground.network)).ok()?.value;
-            let driven = recrash_sim::simulate(&scenario, Ego::Recorded);
-            let fits = hinders_nobody(&id, &scenario, (&rollout, &driven))
-                && Seen::new(told, &driven, scene.contact_s).holds(extra)
-                && (!waits || Seen::new(told, &driven, scene.contact_s).reason(StandReason::Yield));
-            fits.then(|| (scenario.draft().clone(), driven))
-        };
-        let waited_for = || actors.iter().find_map(|actor| place(actor.clone(), true));
-        let tried = gives_way.then(waited_for).flatten();
-        let tried = tried.or_else(|| actors.iter().find_map(|actor| place(actor.clone(), false)));
-        if let Some((with, driven)) = tried {
-            (draft, rollout) = (with, driven);
+        if let Some(with) = scene.with_first(extra, (&draft, &rollout)) {
+            (draft, rollout) = with;
             if let Some(near) = extra.near {
                 assumed.push(format!("where {id} is that has no part in what the ego does: {}", near.words()));
             }
@@ -248,6 +236,7 @@ struct Scene<'a> {
     told: &'a Told,
     ground: &'a Ground,
     ego: &'a ActorTrack,
+    partner: Option<&'a ActorTrack>,
     contact_s: f64,
     until: usize,
 }
@@ -262,7 +251,35 @@ impl<'a> Scene<'a> {
         let contact_s = rollout.events.iter().find_map(touched)?;
         let ego = rollout.ego_track();
         let until = ((contact_s * 10.0) as usize).min(ego.states.len() - 1);
-        Some(Self { told, ground, ego, contact_s, until })
+        let partner = rollout.actors.iter().find(|track| track.id == "cp");
+        Some(Self { told, ground, ego, partner, contact_s, until })
+    }
+
+    /// The same with somebody in the first of its places that shows what is told of it: one in which the ego stands for whom it gave way to
+    /// goes before the others.
+    fn with_first(&self, extra: &Extra, begun: (&ScenarioDraft, &Rollout)) -> Option<(ScenarioDraft, Rollout)> {
+        let (draft, rollout) = begun;
+        let gives_way = extra.awaited && extra.near.is_some() && self.told.reasons.contains(&StandReason::Yield);
+        let mut best = None;
+        for actor in self.actors(extra) {
+            let mut with = draft.clone();
+            with.actors.push(actor);
+            let recorded = with.ego.recorded.clone()?;
+            with.control = control::devices(self.told, self.ground, &recorded, &with.actors);
+            let Ok(checked) = check_on(with, Some(&self.ground.network)) else { continue };
+            let driven = recrash_sim::simulate(&checked.value, Ego::Recorded);
+            let seen = Seen::new(self.told, &driven, self.contact_s);
+            if !hinders_nobody(&extra.id(), &checked.value, (rollout, &driven)) || !seen.holds(extra) {
+                continue;
+            }
+            let waited_for = !gives_way || seen.reason(StandReason::Yield);
+            let found = || (checked.value.draft().clone(), driven.clone());
+            if waited_for {
+                return Some(found());
+            }
+            best = best.or_else(|| Some(found()));
+        }
+        best
     }
 
     fn actors(&self, extra: &Extra) -> Vec<Actor> {
@@ -359,9 +376,13 @@ impl<'a> Scene<'a> {
                 if !stands {
                     list.extend(self.oncoming(half_m));
                 }
+                if near.does == Does::Slows {
+                    list.extend(self.waits_opposite(half_m).iter().map(|way| self.coming_to(way)));
+                }
                 list.extend(self.waits_opposite(half_m));
             }
             Some(Origin::Ahead) => {
+                list.extend(self.loses(half_m));
                 if !stands {
                     list.extend(self.leads(half_m));
                 }
@@ -403,7 +424,7 @@ impl<'a> Scene<'a> {
         }
         for way in &mut list {
             let slows = matches!(near.does, Does::Slows | Does::PullsOver(_));
-            way.slows = slows && way.speed_mps > SLOWS_BY_MPS;
+            way.slows = slows && way.speed_mps > SLOWS_BY_MPS && way.stops_m.is_none();
         }
         list
     }
@@ -459,12 +480,21 @@ impl<'a> Scene<'a> {
         let (s_m, _) = self.at(self.until);
         let line_m = self.ground.first_m();
         let across_m = line_m + 2.0 * corner_m(self.ground.lanes) + half_m + 1.0;
-        let place = |on_m: f64| {
+        let place = |lane: usize, on_m: f64| {
             let at_m = s_m + on_m;
             let inside = self.ground.junction && at_m + half_m > line_m;
-            Way::stands(self.against(if inside { at_m.max(across_m) } else { at_m }))
+            Way::stands(self.against_in(lane, if inside { at_m.max(across_m) } else { at_m }))
         };
-        [10.0, 20.0, 30.0, 4.0].into_iter().map(place).collect()
+        let lanes = 0..self.ground.oncoming.max(1);
+        lanes.flat_map(|lane| [10.0, 20.0, 30.0, 4.0].map(|on_m| place(lane, on_m))).collect()
+    }
+
+    /// Comes along to where somebody stands.
+    fn coming_to(&self, way: &Way) -> Way {
+        let [_, speed_mps] = self.speeds();
+        let way_m = COMES_SHARE * speed_mps * self.contact_s;
+        let from = way.from.position - Vec2::from_heading(way.from.heading) * way_m;
+        Way { speed_mps, stops_m: Some(way_m), ..Way::stands(Pose { position: from, ..way.from }) }
     }
 
     /// Backs a little: in the lane towards the ego, where it is told there; else out of where it is parked, or stands.
@@ -499,6 +529,15 @@ impl<'a> Scene<'a> {
         list
     }
 
+    /// Drives on ahead of what fell off it.
+    fn loses(&self, half_m: f64) -> Option<Way> {
+        let thing = self.partner.filter(|_| self.told.dropped.is_some())?;
+        let (pose, on_m) = (thing.states[0].pose(), 0.5 * thing.length_m + half_m + RIGHT_BEHIND_M);
+        let from = Pose { position: pose.position + Vec2::from_heading(pose.heading) * on_m, ..pose };
+        let (s_m, _) = self.ground.beside(from.position);
+        Some(Way::straight(self.road(s_m, self.at(0).1), thing.states[0].speed(), 0.0))
+    }
+
     fn stands_ahead(&self, half_m: f64, least_m: f64) -> Vec<Way> {
         let (s_m, _) = self.at(self.until);
         let front_m = s_m + self.front_m() + half_m;
@@ -520,7 +559,7 @@ impl<'a> Scene<'a> {
             for speed_mps in self.speeds().into_iter().rev() {
                 for behind_m in [6.0, 12.0, 18.0, 26.0] {
                     let rests_m = s_m - self.front_m() - half_m - behind_m;
-                    let way_m = 0.7 * speed_mps * self.contact_s;
+                    let way_m = COMES_SHARE * speed_mps * self.contact_s;
                     let from = self.road(rests_m - way_m, t_m);
                     list.push(Way { speed_mps, stops_m: Some(way_m), ..Way::stands(from) });
                 }
@@ -545,7 +584,7 @@ impl<'a> Scene<'a> {
                 list.extend(t_m.map(at));
             }
             // It comes along, and stands there.
-            let way_m = 0.7 * speed_mps * self.contact_s;
+            let way_m = COMES_SHARE * speed_mps * self.contact_s;
             let rests = |on_m: f64| Way {
                 speed_mps,
                 stops_m: Some(way_m),

@@ -121,6 +121,8 @@ pub(crate) struct Extra {
     pub(crate) awaited: bool,
     /// The ego has gone round it, and is back in its lane.
     pub(crate) behind: bool,
+    /// The partner is told to pass between the ego and it.
+    pub(crate) between: bool,
     /// Who is on foot is told to stay where it is, and not to cross.
     pub(crate) stays: bool,
     /// More than one.
@@ -143,6 +145,7 @@ impl Extra {
             first: false,
             awaited: true,
             behind: false,
+            between: false,
             stays: false,
             several: false,
             side: None,
@@ -272,6 +275,7 @@ pub(crate) fn wanted(told: &Told, account: &Account) -> Vec<Extra> {
             let before = list.iter().filter(|extra| extra.role == Role::Near).count();
             let near = Near::of(other, &text(&other.kind.source), before).filter(|_| !other.touched_partner);
             let (awaited, several) = (story.is_near(other), other.several);
+            let near = near.map(|near| if told.dropped == Some(number) { near.ahead() } else { near });
             near.map(|near| Extra { awaited, several, ..Extra::near(near, number, kind) })
         };
         // Traffic that an ego passes which is not told to have slowed or stood is there.
@@ -299,10 +303,9 @@ pub(crate) fn wanted(told: &Told, account: &Account) -> Vec<Extra> {
                 let side = story.side(role, told, other);
                 let awaited = story.is_near(other) || other.several;
                 let behind = role == Role::Obstacle && story.is_back(other);
+                let between = role == Role::Beside && story.is_between(told, other);
                 let stays = role == Role::Walker && stays_close(other);
-                let several = other.several;
                 list.push(Extra {
-                    role,
                     of: vec![number],
                     kind,
                     goes,
@@ -310,10 +313,11 @@ pub(crate) fn wanted(told: &Told, account: &Account) -> Vec<Extra> {
                     first,
                     awaited,
                     behind,
+                    between,
                     stays,
-                    several,
+                    several: other.several,
                     side,
-                    near: None,
+                    ..Extra::of_reason(role)
                 });
             }
         }
@@ -526,14 +530,22 @@ impl Story<'_> {
         told.comes_over || at_kerb && self.account.partner.as_ref().is_some_and(|party| party.acts.iter().any(passes))
     }
 
-    /// Whether a partner that goes the ego's way is told to pass between it and another one.
-    fn is_between(&self, told: &Told) -> bool {
-        if !matches!(told.origin, Origin::Behind | Origin::Beside { .. }) {
-            return false;
-        }
+    /// Whether the partner is told to pass between the ego and somebody: who is named right behind that; where nobody is, and the partner
+    /// goes the ego's way, anybody.
+    fn is_between(&self, told: &Told, other: &Other) -> bool {
         let between =
-            |fact: &ActFact| fact.act == Act::Pass && !fact.after_contact && text(&fact.source).contains("between");
-        self.account.partner.as_ref().is_some_and(|partner| partner.acts.iter().any(between))
+            |fact: &&ActFact| fact.act == Act::Pass && !fact.after_contact && text(&fact.source).contains("between");
+        let acts = self.account.partner.iter().flat_map(|partner| &partner.acts).filter(between);
+        let ends: Vec<usize> = acts.filter_map(|fact| Some(span(&fact.source)?.1)).collect();
+        let named = |other: &Other| {
+            let behind = |(start, _)| ends.iter().any(|end| (*end..=end + PASSES_WITHIN).contains(&start));
+            span(&other.kind.source).is_some_and(behind)
+        };
+        match told.origin {
+            Origin::Behind | Origin::Beside { .. } if !self.account.others.iter().any(named) => !ends.is_empty(),
+            Origin::Behind | Origin::Beside { .. } | Origin::Opposite => named(other),
+            _ => false,
+        }
     }
 
     /// Whether somebody is told to drive, and to do nothing else.
@@ -613,7 +625,7 @@ impl Story<'_> {
         if stands && !other.several && !near && self.is_passed(told) {
             return Some(Role::Passed);
         }
-        if stands && !other.several && self.is_between(told) {
+        if stands && !other.several && self.is_between(told, other) {
             return Some(Role::Beside);
         }
         if is_parked(other) && !did(&[Act::PullOut, Act::SetOff, Act::Follow, Act::Reverse]) {
@@ -750,7 +762,7 @@ impl Story<'_> {
             }),
             _ if role == Role::Obstacle && self.is_back(other) => None,
             // On the side where the partner touches the ego.
-            _ if role == Role::Beside && self.is_between(told) => {
+            _ if role == Role::Beside && self.is_between(told, other) => {
                 side_of(&told.sv.zones).map(|side| if side > 0.0 { LeftRight::Left } else { LeftRight::Right })
             }
             _ => passed.filter(|_| matches!(role, Role::Obstacle | Role::Beside)),

@@ -214,7 +214,8 @@ const SEEN_S: f64 = 1.0;
 /// from its stop line where it stood.
 pub(crate) fn slows_in_turn(told: &Told, past_line_m: Option<f64>) -> Option<Pace> {
     let (sv, end_s) = (&told.sv, told.contact_s);
-    let turns = (told.edge.is_some() || told.stands_across()) && matches!(sv.turning, Turning::Left | Turning::Right);
+    let turns = (told.edge.is_some() || told.stands_across() || told.at_entrance)
+        && matches!(sv.turning, Turning::Left | Turning::Right);
     let line_m = past_line_m.filter(|_| turns && sv.state == ContactState::Moving && sv.phases.is_empty())?;
     let slows = |from_mps: f64| {
         let over_s = (from_mps - sv.speed_mps) / SLOWS_MPS2;

@@ -31,7 +31,11 @@ const CREEPS_MPS: f64 = 0.6;
 /// Who stands in the next lane is no farther ahead or behind. [m]
 const BESIDE_M: f64 = 10.0;
 
-/// Whom the ego stands for while it comes comes so much nearer then. [m]
+/// Who is passed between it and the ego is abreast of that by so much, and no more lanes aside. [m, lanes]
+const OVERLAPS_M: f64 = 0.5;
+const BESIDE_LANES: f64 = 2.4;
+
+/// Whom the ego stands for while it comes comes so much nearer then; and who passes between two is no farther before them. [m]
 const COMES_M: f64 = 2.0;
 
 /// A rollout, and when the two touch.
@@ -213,7 +217,9 @@ impl<'a> Seen<'a> {
     fn leads(&self, extra: &Extra, track: &ActorTrack) -> bool {
         let (from, to) = stood_behind(extra, self.ego, self.until).unwrap_or((self.until, self.until));
         let (ahead_m, left_m) = self.beside(track, from);
-        let queue_m = if waits_ahead(self.told) { PARKED_M } else { 0.0 };
+        // Behind or beside a partner that stands in the queue too.
+        let at_kerb = self.told.is_at_kerb() && matches!(self.told.origin, Origin::Beside { .. });
+        let queue_m = if waits_ahead(self.told) || at_kerb { PARKED_M } else { 0.0 };
         let within_m = AHEAD_M + 0.5 * track.length_m + self.stopping_m(from) + queue_m;
         let there = ahead_m > 0.0 && math::hypot(ahead_m, left_m) < within_m && left_m.abs() < LANE_M;
         let stood = Self::mps(track, from) < STANDS_MPS;
@@ -302,8 +308,22 @@ impl<'a> Seen<'a> {
     fn stands_beside(&self, extra: &Extra, track: &ActorTrack) -> bool {
         let (ahead_m, left_m) = self.beside(track, self.until);
         let side = extra.side.is_none_or(|side| (side == LeftRight::Left) == (left_m > 0.0));
+        if extra.between {
+            return self.stays(track) && side && self.is_passed_between(track);
+        }
         let next = (0.5 * LANE_M..1.8 * LANE_M).contains(&left_m.abs());
         self.stays(track) && side && next && ahead_m.abs() < BESIDE_M + 0.5 * track.length_m
+    }
+
+    /// Whether somebody is abreast of the ego where that is touched, and the partner between the two, or about to come there.
+    fn is_passed_between(&self, track: &ActorTrack) -> bool {
+        let Some(partner) = self.rollout.actors.iter().find(|track| track.id == "cp") else { return false };
+        let ((at_m, left_m), (by_m, by_left_m)) = (self.beside(track, self.until), self.beside(partner, self.until));
+        let half_m = 0.5 * (self.ego.length_m + track.length_m);
+        let abreast =
+            (at_m + 0.5 * self.ego.length_m).abs() < half_m - OVERLAPS_M && left_m.abs() < BESIDE_LANES * LANE_M;
+        let comes = (by_m - at_m).abs() < 0.5 * (partner.length_m + track.length_m) + COMES_M;
+        abreast && comes && by_left_m * left_m > 0.0 && by_left_m.abs() < left_m.abs()
     }
 
     /// Whether somebody is in the next lane on the told side where the ego is touched, and has come along beside it.

@@ -148,6 +148,7 @@ impl Told {
                 _ => {}
             }
         }
+        self.cp.speed_mps = self.dropped_mps().unwrap_or(self.cp.speed_mps);
         if self.cp.impact_mps.is_none() && self.gives_way_to_merge {
             self.cp.speed_mps = MERGES_MPS;
         }

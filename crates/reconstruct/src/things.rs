@@ -5,19 +5,19 @@ use crate::extras::STANDS_MPS;
 use crate::ground::LANE_M;
 use crate::lateral::is_on_foot;
 use crate::others::Role;
-use crate::pace::{Pace, start_over};
+use crate::pace::{Pace, start_over, when};
 use crate::side::{Side, Turning};
 use crate::told::Told;
 use crate::touch::{self, side_of, size_of};
 use recrash_model::account::{
-    Account, Act, ActFact, ContactState, Fact, Kind, KindGroup, LaneWord, LeftRight, Origin, Party, PlaceKind, Source,
-    Striker, told,
+    Account, Act, ActFact, ContactState, Fact, Kind, KindGroup, LaneWord, LeftRight, Origin, Party, PlaceKind,
+    RoadFeature, Source, Striker, told,
 };
 use recrash_model::geometry::{OrientedBox, Pose, Vec2};
 use recrash_model::kinds::PartnerKind;
 use recrash_model::math;
 use recrash_model::rollout::{ActorTrack, STEP_S};
-use recrash_model::scenario::{ObstacleKind, Size};
+use recrash_model::scenario::{Deed, ObstacleKind, Size};
 use recrash_model::template::Movement;
 use recrash_model::zones::ContactZone;
 
@@ -293,6 +293,18 @@ pub(crate) fn is_overhead(sv: &Party) -> bool {
     !zones.is_empty() && zones.iter().all(|zone| *zone == ContactZone::Top)
 }
 
+/// Whether a thing closes an entrance, or lies across it.
+pub(crate) fn is_at_entrance(thing: &Party) -> bool {
+    let lies =
+        words_of(&thing.kind).is_some_and(|text| ["spikes", "gate track"].iter().any(|word| text.contains(word)));
+    lies || matches!(told(&thing.kind), Some(Kind::Chain | Kind::Gate | Kind::Barrier))
+}
+
+/// Whether the road is told to be a slope.
+pub(crate) fn is_on_slope(account: &Account) -> bool {
+    account.place.features.iter().any(|fact| fact.value == RoadFeature::Slope)
+}
+
 /// Whether a thing is told to be fixed, and no more.
 pub(crate) fn is_fixed(thing: &Party) -> bool {
     told(&thing.kind) == Some(Kind::Object) && words_of(&thing.kind).is_some_and(|text| text.contains("fixed"))
@@ -322,7 +334,66 @@ pub(crate) fn swings(kind: Kind, thing: &Party, striker: Option<Striker>) -> boo
 /// Size of the post of a gate that swings. [m]
 pub(crate) const POST: Size = Size { length_m: 0.3, width_m: 0.3 };
 
+/// What falls off the vehicle ahead slides for so long until it is met, and slows so; no slower than this, nor from a higher speed: no
+/// scenario has a thing that is faster. [s, m/s^2, m/s]
+const DROPPED_MOST_MPS: f64 = 15.0;
+const DROPPED_S: f64 = 2.5;
+const DROPPED_MPS2: f64 = 5.0;
+const DROPPED_LEAST_MPS: f64 = 0.5;
+
+/// Who is named no farther behind the words that a thing came from somewhere is where it came from. [byte]
+const FROM_WITHIN: usize = 16;
+
+/// Which of the others a thing fell off, or came out from under, ahead of an ego that follows it: one whose place is told with that, or who
+/// is named right behind it. What had fallen before lies there.
+pub(crate) fn dropped_by(account: &Account, partner: &Party, sv: &Side, place: PlaceKind) -> Option<usize> {
+    let drops = matches!(told(&partner.kind)?, Kind::Debris | Kind::LooseWheel | Kind::Cargo | Kind::Object);
+    let along = sv.state == ContactState::Moving && sv.turning == Turning::No && sv.aside.is_none();
+    let slow = sv.impact_mps.map_or(place != PlaceKind::Highway, |mps| mps <= DROPPED_MOST_MPS);
+    if !drops || !along || !slow || told(&account.came_from) != Some(Origin::Ahead) {
+        return None;
+    }
+    let words = |source: &Source| match source {
+        Source::Words { start, end, text } => Some((*start, *end, text.to_lowercase())),
+        _ => None,
+    };
+    let falls = |text: &str| ["fell", "came off", "from under"].iter().any(|word| text.contains(word));
+    let acts = partner.acts.iter().filter(|fact| !fact.after_contact);
+    let said: Vec<_> = acts.filter_map(|fact| Some((fact.act, words(&fact.source)?))).collect();
+    let fell = said.iter().any(|(act, (.., text))| *act == Act::Fall && falls(text));
+    let from: Vec<usize> = said
+        .iter()
+        .filter(|(act, (.., text))| *act == Act::Enter && text.ends_with("from"))
+        .map(|(_, (_, end, _))| *end)
+        .collect();
+    account.others.iter().position(|other| {
+        let drives = other.kind.value.group() != KindGroup::Object && !other.several && !other.touched_partner;
+        let place = other.place.as_ref().filter(|fact| fact.value == Origin::Ahead);
+        let with_place = place.is_some_and(|fact| fell || words(&fact.source).is_some_and(|(.., text)| falls(&text)));
+        let named = words(&other.kind.source).is_some_and(|(start, ..)| {
+            other.place.is_none() && from.iter().any(|end| (*end..=end + FROM_WITHIN).contains(&start))
+        });
+        drives && (with_place || named)
+    })
+}
+
 impl Told {
+    /// How fast a thing is yet that fell off the vehicle ahead. [m/s]
+    pub(crate) fn dropped_mps(&self) -> Option<f64> {
+        let slowed_mps = self.sv.speed_mps - DROPPED_MPS2 * DROPPED_S;
+        self.dropped.map(|_| slowed_mps.max(DROPPED_LEAST_MPS.min(self.sv.speed_mps)))
+    }
+
+    /// It comes along as fast as the ego, on the vehicle ahead, and slides.
+    fn dropped_pace(&self) -> Option<Pace> {
+        let (from_mps, to_mps) = (self.sv.speed_mps, self.dropped_mps()?);
+        let sliding_s = (from_mps - to_mps) / DROPPED_MPS2;
+        let slows = Deed::Speed { to_mps, rate_mps2: DROPPED_MPS2 };
+        let on_m = from_mps * (self.contact_s - DROPPED_S) + to_mps * (DROPPED_S - sliding_s);
+        let driven_m = on_m + 0.5 * (from_mps + to_mps) * sliding_s;
+        Some(Pace { speed_mps: from_mps, acts: vec![when(self.contact_s - DROPPED_S, slows)], driven_m })
+    }
+
     /// Whether the partner is a kerb or a wall that stands across the ego's way: nobody tells on which side of it.
     pub(crate) fn stands_across(&self) -> bool {
         let along = matches!(self.thing, Some(Kind::Curb | Kind::Wall));
@@ -350,8 +421,11 @@ pub(crate) fn walks_across(origin: Origin, partner: &Party) -> bool {
     along && on_foot && (crosses || enters)
 }
 
-/// It lies or stands aside, and then comes.
+/// It lies or stands aside, and then comes; or it comes off the vehicle ahead.
 pub(crate) fn pace(told: &Told) -> Option<Pace> {
+    if let Some(dropped) = told.dropped_pace() {
+        return Some(dropped);
+    }
     // From the lane's edge where somebody drives in the next one.
     let abreast = told.extras.iter().any(|extra| matches!(extra.role, Role::Abreast | Role::Beside));
     let far = match (told.origin, side_of(&told.sv.zones)) {

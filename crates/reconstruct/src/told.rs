@@ -2,6 +2,7 @@
 
 use crate::acts;
 use crate::choices::Choices;
+use crate::control;
 use crate::ground::LANE_M;
 use crate::kerb;
 use crate::lateral;
@@ -48,6 +49,10 @@ pub(crate) struct Told {
     pub(crate) gate_swings: bool,
     /// How the partner lies that the ego drives over, where told.
     pub(crate) lies: Option<Lies>,
+    /// Which of the others the partner fell off, or came out from under, ahead of the ego.
+    pub(crate) dropped: Option<usize>,
+    /// The partner lies, hangs or stands across the entrance that the ego turned into.
+    pub(crate) at_entrance: bool,
     /// The side of the road at whose edge the partner stands.
     pub(crate) edge: Option<LeftRight>,
     /// The partner is told to be parked at an angle to the road.
@@ -90,6 +95,8 @@ pub(crate) struct Told {
     pub(crate) crossed_near: bool,
     /// A stop for all: there is a sign on every arm.
     pub(crate) all_way: bool,
+    /// The ego's light turned green when it had set off and come to a stop again.
+    pub(crate) green_late: bool,
     /// Why the ego stood.
     pub(crate) reasons: Vec<StandReason>,
     /// Others than the two.
@@ -140,6 +147,8 @@ impl Told {
             (PlaceKind::Circle, _) => Err(Untold::Place),
             (_, Origin::Above) => Err(Untold::FromAbove),
             _ if this.thing.is_some() && things::is_overhead(&account.sv) => Err(Untold::FromAbove),
+            // What it scrapes where the road bends on a hill has no edge, and no road here has heights.
+            _ if this.lies == Some(Lies::Edge) && things::is_on_slope(account) => Err(Untold::Place),
             _ => Ok(this),
         }
     }
@@ -188,13 +197,18 @@ impl Told {
         if edge.is_some() && things::size(partner).is_none() {
             cp.size = roadside::size(kind).or(cp.size);
         }
+        let dropped = things::dropped_by(account, partner, &sv, place).filter(|_| edge.is_none() && lies.is_none());
+        if dropped.is_some() {
+            cp.state = ContactState::Moving;
+            assumed.retain(|assumed| !assumed.starts_with("the partner is "));
+        }
         let diagonal = roadside::is_diagonal(partner, &cp);
         cp.backs_in = kerb::backs_in(partner, cp.state, origin, place);
         let striker = told(&account.striker);
         // What rolls into the ego's flank comes there after its front; that a thing is there first is only a rule.
         let on_flank = !sv.zones.is_empty() && !sv.zones.iter().any(|zone| zone.is_front());
         let into_flank = thing.is_some() && cp.state == ContactState::Moving && on_flank;
-        let order = told(&account.order).filter(|_| !into_flank);
+        let order = told(&account.order).filter(|_| !into_flank && dropped.is_none());
         let wanted_rig = trailer::rig(partner, &cp, origin);
         let pushed_rolling = (partner.did(Act::Follow) || partner.did(Act::Slow))
             && !(partner.did(Act::Stop) || partner.did(Act::Hold) || cp.state.stands());
@@ -211,9 +225,11 @@ impl Told {
             sv,
             cp,
             thing,
-            slides: things::slides(partner),
+            slides: things::slides(partner) && dropped.is_none(),
             gate_swings,
             lies,
+            dropped,
+            at_entrance: things::is_at_entrance(partner) && edge.is_none() && !gate_swings,
             edge,
             diagonal,
             lane_changed: things::changed_lanes_before(account),
@@ -239,6 +255,7 @@ impl Told {
             more_lanes: false,
             crossed_near: false,
             all_way: others::is_all_way(account),
+            green_late: control::turns_green_late(&account.sv),
             reasons: others::reasons(account, origin),
             others: account.others.len(),
             door: told(&account.door),
@@ -301,8 +318,8 @@ impl Told {
         {
             self.cp.slants = Some(Slant::Stood { side: Some(turned), oncoming: turned != side });
         }
-        // Who meets a thing after a turn may be in it yet.
-        if self.thing.is_some() && self.sv.movement == Some(Movement::Straight) {
+        // Who meets a thing after a turn may be in it yet; not what lies across where it turned into.
+        if self.thing.is_some() && !self.at_entrance && self.sv.movement == Some(Movement::Straight) {
             self.sv.turned = false;
         }
         if things::lies_before_turn(self, sv) {

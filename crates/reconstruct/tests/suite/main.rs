@@ -13,6 +13,7 @@ mod moves;
 mod near;
 mod near_deeds;
 mod others;
+mod places;
 mod roadside;
 mod sabotage;
 mod steps;

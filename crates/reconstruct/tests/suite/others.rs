@@ -143,7 +143,7 @@ fn shown_reason(text: &str, id: &str) -> Reconstruction {
     shown
 }
 
-fn moved(plan: &mut ActorPlan, by_x_m: f64, by_y_m: f64) {
+pub(crate) fn moved(plan: &mut ActorPlan, by_x_m: f64, by_y_m: f64) {
     let places = plan.course.iter_mut().filter_map(|leg| match leg {
         recrash_model::scenario::Leg::Curve { to, .. } => Some(to),
         _ => None,
