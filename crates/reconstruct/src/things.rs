@@ -370,9 +370,9 @@ pub(crate) fn dropped_by(account: &Account, partner: &Party, sv: &Side, place: P
         let drives = other.kind.value.group() != KindGroup::Object && !other.several && !other.touched_partner;
         let place = other.place.as_ref().filter(|fact| fact.value == Origin::Ahead);
         let with_place = place.is_some_and(|fact| fell || words(&fact.source).is_some_and(|(.., text)| falls(&text)));
-        let named = words(&other.kind.source).is_some_and(|(start, ..)| {
-            other.place.is_none() && from.iter().any(|end| (*end..=end + FROM_WITHIN).contains(&start))
-        });
+        let named = words(&other.kind.source)
+            .is_some_and(|(start, ..)| from.iter().any(|end| (*end..=end + FROM_WITHIN).contains(&start)));
+        let named = named && other.place.as_ref().is_none_or(|fact| fact.value == Origin::Ahead);
         drives && (with_place || named)
     })
 }
