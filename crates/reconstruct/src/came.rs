@@ -9,10 +9,10 @@ use crate::lanes;
 use crate::lateral;
 use crate::others::Role;
 use crate::pace::{
-    Pace, ROLLING_MPS, STOOD_S, STOPPING_MPS2, ego_paces, first_time, next, partner_paces, time_before, when,
+    Pace, ROLLING_MPS, STANDING, STOOD_S, STOPPING_MPS2, ego_paces, first_time, next, partner_paces, time_before, when,
 };
 use crate::phases;
-use crate::side::{Turning, size_of as size_of_kind};
+use crate::side::{Side, Turning, size_of as size_of_kind};
 use crate::sweep;
 use crate::things;
 use crate::told::{Aside, Told};
@@ -414,10 +414,12 @@ fn partner(told: &Told, staging: &Staging) -> (Vec<Actor>, Vec<ObjectSpec>) {
         parts: told.rig.iter().map(Rig::part).collect(),
         plan,
     };
-    let (plan, begin) = match pace.driven_m {
+    let driven_m = pace.driven_m;
+    let (plan, begin) = match driven_m {
         0.0 => (ActorPlan::standing(at(staging.cp)), staging.cp),
         _ => course_to(told, staging, pace, at),
     };
+    let own = OwnWay { course: plan.course.clone(), begin, driven_m };
     let plan = match lead {
         Some(lead) => phases::before(lead, plan, begin, lateral::came_over(told, &staging.ground, arm_m)),
         None => lateral::turns_off(told, staging, begin, &plan, arm_m).unwrap_or(plan),
@@ -427,14 +429,21 @@ fn partner(told: &Told, staging: &Staging) -> (Vec<Actor>, Vec<ObjectSpec>) {
     if stands {
         return (actors, Vec::new());
     }
-    let toucher = if told.pusher_stands { grazed } else { nudger };
-    actors.extend((told.pushed && told.thing.is_none()).then(|| toucher(told, staging)));
+    let toucher = || if told.pusher_stands { grazed(told, staging) } else { nudger(told, staging, own) };
+    actors.extend((told.pushed && told.thing.is_none()).then(toucher));
     (actors, Vec::new())
+}
+
+/// The partner's last way: its legs, where it begins, and how far it is.
+struct OwnWay {
+    course: Vec<Leg>,
+    begin: Pose,
+    driven_m: f64,
 }
 
 /// Who touched the partner on its way: it comes up from behind and runs into it, right before the contact. What is told of that
 /// first contact beside that there was one is not shown.
-fn nudger(told: &Told, staging: &Staging) -> Actor {
+fn nudger(told: &Told, staging: &Staging, own: OwnWay) -> Actor {
     let (cp, gear) = (&told.cp, if told.cp.state == ContactState::Reversing { -1.0 } else { 1.0 });
     let way = Vec2::from_heading(staging.cp.heading) * gear;
     let (kind, size, length_m) = pusher(told);
@@ -443,11 +452,18 @@ fn nudger(told: &Told, staging: &Staging) -> Actor {
     let start = touches - way * (speed_mps * (told.contact_s - THROW_S));
     let degrees = staging.cp.heading.to_degrees() + if gear < 0.0 { 180.0 } else { 0.0 };
     let place = |point: Vec2| Place::at(point.x, point.y, degrees);
-    let plan = ActorPlan {
-        speed_mps,
-        course: vec![Leg::Curve { to: place(touches + way * beyond_m(speed_mps)), reverse: false }],
-        ..ActorPlan::standing(place(start))
+    // By the partner's way, where that came askew to its road there.
+    let behind_m = (staging.cp.position - start).dot(way) - own.driven_m;
+    let askew = math::wrap_angle(staging.cp.heading - own.begin.heading).abs() > ASKEW_RAD;
+    let (from, course) = if askew && gear > 0.0 && behind_m > 0.0 {
+        let Pose { position, heading } = own.begin;
+        let from = position - Vec2::from_heading(heading) * behind_m;
+        (Place::at(from.x, from.y, heading.to_degrees()), own.course)
+    } else {
+        let to = place(touches + way * beyond_m(speed_mps));
+        (place(start), vec![Leg::Curve { to, reverse: false }])
     };
+    let plan = ActorPlan { speed_mps, course, ..ActorPlan::standing(from) };
     Actor { id: "pusher".to_owned(), kind, size, mass_kg: None, parts: Vec::new(), plan }
 }
 
@@ -540,9 +556,11 @@ fn line_to(told: &Told, staging: &Staging, pace: Pace, at: impl Fn(Pose) -> Plac
     }
     let straight = || Pose { position: staging.cp.position - motion(staging.cp.heading) * pace.driven_m, ..staging.cp };
     // What is long cannot whip round: it comes straight.
+    let length_m = size_of(cp).0;
     let whips = |begin: &Pose| {
         let mut course = Course::begin(arm_m);
-        reverse && course.curve(*begin, staging.cp, reverse) && is_tight(&course, size_of(cp).0)
+        let long = reverse && length_m > LONG_M;
+        long && course.curve(*begin, staging.cp, reverse) && is_tight(&course, TIGHTEST_LENGTHS * length_m)
     };
     let fitted = fitted(true).or_else(|| fitted(false)).filter(|begin| !whips(begin));
     let begin = fitted.unwrap_or_else(straight);
@@ -551,15 +569,25 @@ fn line_to(told: &Told, staging: &Staging, pace: Pace, at: impl Fn(Pose) -> Plac
     (plan, begin)
 }
 
-/// What is longer than this bends its line no tighter than by so much of its length. [m]
-const LONG_M: f64 = 6.0;
-const LONG_LENGTHS: f64 = 0.5;
+/// Nothing on wheels, longer than the first, bends its line tighter than the second, or than so much of its length. [m]
+pub(crate) const WHEELED_M: f64 = 2.5;
+pub(crate) const TIGHTEST_M: f64 = 4.5;
+const TIGHTEST_LENGTHS: f64 = 0.5;
 
-/// Whether a line bends tighter than somebody so long can.
-fn is_tight(course: &Course, length_m: f64) -> bool {
+/// What is longer than this does not whip round in reverse. [m]
+const LONG_M: f64 = 6.0;
+
+/// Whether a line bends tighter than this somewhere.
+fn is_tight(course: &Course, tightest_m: f64) -> bool {
     let steps = (course.length_m() / PIECE_M * 10.0).ceil() as usize;
     let at = |step: usize| course.spot(course.length_m() * step as f64 / steps.max(1) as f64);
-    length_m > LONG_M && (0..=steps).any(|step| at(step).curvature.abs() * LONG_LENGTHS * length_m > 1.0)
+    (0..=steps).any(|step| at(step).curvature.abs() * tightest_m > 1.0)
+}
+
+/// The tightest bend that somebody drives; none of who walks or rides. [m]
+fn tightest_m(side: &Side) -> f64 {
+    let wheels = VehicleSpec::of(side.kind).length_m > WHEELED_M;
+    if wheels { TIGHTEST_M.max(TIGHTEST_LENGTHS * size_of(side).0) } else { 0.0 }
 }
 
 /// Who turns with the ego, behind it or beside it, comes by its way: where it begins, and the poses that it drives by to the contact.
@@ -570,7 +598,8 @@ fn with_its_turn(told: &Told, staging: &Staging, pace: &Pace, arm_m: f64) -> Opt
         return None;
     }
     // It goes straight on.
-    if told.origin == Origin::Behind && math::wrap_angle(cp.heading - staging.cp_came).abs() < STRAIGHT_RAD {
+    let goes_on = told.origin == Origin::Behind || told.cp.turning == Turning::No;
+    if goes_on && math::wrap_angle(cp.heading - staging.cp_came).abs() < STRAIGHT_RAD {
         return None;
     }
     let (met_m, beside_m) = ground.beside(cp.position);
@@ -581,11 +610,11 @@ fn with_its_turn(told: &Told, staging: &Staging, pace: &Pace, arm_m: f64) -> Opt
         _ if abreast => beside_m.signum() * LANE_M,
         _ => beside_m,
     };
-    let joins: &[f64] = if abreast { &[12.0, 9.0, 15.0, 6.0] } else { &[3.0, 5.0, 8.0] };
+    let joins: &[f64] = if abreast { &[12.0, 9.0, 15.0, 6.0] } else { &[3.0, 5.0, 8.0, 12.0, 16.0] };
     joins.iter().find_map(|&joins_m| {
         let last_m = met_m - joins_m;
         let mut join = Course::begin(arm_m);
-        if !join.curve(ground.pose(last_m, beside_m), cp, false) {
+        if !join.curve(ground.pose(last_m, beside_m), cp, false) || is_tight(&join, tightest_m(&told.cp)) {
             return None;
         }
         let turn_m = (last_m - ground.first_m()).max(0.0);
@@ -656,50 +685,89 @@ fn push_mps(told: &Told, partner_mps: f64) -> f64 {
     }
 }
 
-/// The partner stands behind the ego, or comes along behind it, and another runs into it: a car at [`PUSH_MPS`] over its speed.
-fn thrown(told: &Told, staging: &Staging) -> Vec<Actor> {
+/// How the partner comes to where another runs into it: that comes with this speed, and drives so much faster than it from then on. [m/s]
+struct Thrown {
+    pace: Pace,
+    pusher_mps: f64,
+    rolls_mps: f64,
+}
+
+/// It stands behind the ego, or comes along behind it, and who runs into it does so at [`PUSH_MPS`] over its speed.
+fn thrown_paces(told: &Told, staging: &Staging) -> Thrown {
     let cp = &told.cp;
-    let way = Vec2::from_heading(staging.cp.heading);
-    let degrees = staging.cp.heading.to_degrees();
-    let at = |back_m: f64| staging.cp.position - way * back_m;
-    let place = |point: Vec2| Place::at(point.x, point.y, degrees);
-    let on = |speed_mps: f64, from: Vec2, acts: Vec<Act>| ActorPlan {
-        speed_mps,
-        course: vec![Leg::Curve { to: place(staging.cp.position + way * beyond_m(speed_mps)), reverse: false }],
-        acts,
-        ..ActorPlan::standing(place(from))
-    };
-    let actor =
-        |id: &str, kind, size, plan| Actor { id: id.to_owned(), kind, size, mass_kg: None, parts: Vec::new(), plan };
     let rolls_mps = if told.pushed_rolling { PUSHED_ROLLING_MPS } else { 0.0 };
     let braking_s = (ROLLING_MPS - rolls_mps) / STOPPING_MPS2;
     let from_s = ((told.contact_s - STOOD_S - braking_s) * 10.0).floor() / 10.0;
     let driven_m = ROLLING_MPS * from_s + 0.5 * (ROLLING_MPS + rolls_mps) * braking_s;
     let moves_up = phases::lead(&cp.phases, told.contact_s - STOOD_S, ROLLING_MPS, phases::MOVES_UP_M, 0.0);
-    let ego_drives_mps = if told.sv.state.stands() { 0.0 } else { told.sv.speed_mps };
-    let push_mps = push_mps(told, ego_drives_mps + rolls_mps);
-    let (partner, pusher_mps) = if told.sv.state == ContactState::Parked {
-        (ActorPlan::standing(place(at(THROW_M))), push_mps)
-    } else if let Some(pace) = as_the_ego(told, staging).filter(|_| ego_drives_mps > 0.0) {
-        (on(pace.speed_mps, at(THROW_M + pace.driven_m), pace.acts), ego_drives_mps + push_mps)
-    } else if ego_drives_mps > 0.0 {
-        (on(ego_drives_mps, at(THROW_M + ego_drives_mps * told.contact_s), Vec::new()), ego_drives_mps + push_mps)
+    let ego_mps = if told.sv.state.stands() { 0.0 } else { told.sv.speed_mps };
+    let push_mps = push_mps(told, ego_mps + rolls_mps);
+    let rolling = |acts: Vec<Act>, driven_m: f64| Pace { speed_mps: ROLLING_MPS, acts, driven_m };
+    let (pace, pusher_mps) = if told.sv.state == ContactState::Parked {
+        (STANDING, push_mps)
+    } else if let Some(pace) = as_the_ego(told, staging).filter(|_| ego_mps > 0.0) {
+        (pace, ego_mps + push_mps)
+    } else if ego_mps > 0.0 {
+        (Pace { speed_mps: ego_mps, acts: Vec::new(), driven_m: ego_mps * told.contact_s }, ego_mps + push_mps)
     } else if rolls_mps > 0.0 {
         // It slows behind the ego, and rolls yet when it is pushed.
         let slow = vec![when(from_s, Deed::Speed { to_mps: rolls_mps, rate_mps2: STOPPING_MPS2 })];
         let rolled_m = rolls_mps * (told.contact_s - from_s - braking_s);
-        (on(ROLLING_MPS, at(THROW_M + driven_m + rolled_m), slow), rolls_mps + push_mps)
+        (rolling(slow, driven_m + rolled_m), rolls_mps + push_mps)
     } else if let Some(lead) = moves_up.filter(|lead| !lead.reverses()) {
         // It stood behind the ego, moved up, and stands again.
-        let from = at(THROW_M + lead.driven_m());
-        (on(lead.speed_mps, from, lead.acts.into_iter().chain([next(Deed::Hold { for_s: None })]).collect()), push_mps)
+        let (speed_mps, driven_m) = (lead.speed_mps, lead.driven_m());
+        let acts = lead.acts.into_iter().chain([next(Deed::Hold { for_s: None })]).collect();
+        (Pace { speed_mps, acts, driven_m }, push_mps)
     } else {
-        let stop =
-            vec![when(from_s, Deed::Stop { rate_mps2: STOPPING_MPS2, at_m: None }), next(Deed::Hold { for_s: None })];
-        (on(ROLLING_MPS, at(THROW_M + driven_m), stop), push_mps)
+        let stop = Deed::Stop { rate_mps2: STOPPING_MPS2, at_m: None };
+        (rolling(vec![when(from_s, stop), next(Deed::Hold { for_s: None })], driven_m), push_mps)
+    };
+    Thrown { pace, pusher_mps, rolls_mps: ego_mps + rolls_mps }
+}
+
+/// Who touches askew to its road was there only at the end: it, and who runs into it, came by its way. [rad]
+const ASKEW_RAD: f64 = 0.05;
+
+/// The partner, and another who runs into it from behind: a car.
+fn thrown(told: &Told, staging: &Staging) -> Vec<Actor> {
+    let cp = &told.cp;
+    let Thrown { pace, pusher_mps, rolls_mps } = thrown_paces(told, staging);
+    let way = Vec2::from_heading(staging.cp.heading);
+    let at = |pose: Pose| Place::at(pose.position.x, pose.position.y, pose.heading.to_degrees());
+    let pushed = Pose { position: staging.cp.position - way * THROW_M, ..staging.cp };
+    let beyond = |speed_mps: f64| Leg::Curve {
+        to: at(Pose { position: staging.cp.position + way * beyond_m(speed_mps), ..staging.cp }),
+        reverse: false,
     };
     let (kind, size, pusher_m) = pusher(told);
-    let until_m = THROW_M + 0.5 * (size_of(cp).0 + pusher_m) + pusher_mps * (told.contact_s - THROW_S);
-    let behind_m = until_m + (ego_drives_mps + rolls_mps) * THROW_S;
-    vec![actor("cp", cp.kind, cp.size, partner), actor("pusher", kind, size, on(pusher_mps, at(behind_m), Vec::new()))]
+    let until_m = 0.5 * (size_of(cp).0 + pusher_m) + pusher_mps * (told.contact_s - THROW_S);
+    let behind_m = until_m + rolls_mps * THROW_S - pace.driven_m;
+    let askew = math::wrap_angle(staging.cp.heading - staging.cp_came).abs() > ASKEW_RAD;
+    let (begin, course) = match askew && pace.driven_m > LEAST_BEFORE_M {
+        true => {
+            let cp_follows_m = staging.cp_follows_m.map(|at_m| at_m - THROW_M);
+            let before = Staging { cp: pushed, cp_follows_m, bend: None, ..staging.clone() };
+            let (plan, begin) = line_to(told, &before, pace.clone(), at);
+            (begin, plan.course)
+        }
+        false => (Pose { position: pushed.position - way * pace.driven_m, ..staging.cp }, Vec::new()),
+    };
+    let on = |speed_mps: f64, from: Pose, acts: Vec<Act>| {
+        let mut course = course.clone();
+        if !matches!(course.last(), Some(Leg::Lanes { .. })) {
+            course.pop();
+            course.push(beyond(speed_mps));
+        }
+        ActorPlan { speed_mps, course, acts, ..ActorPlan::standing(at(from)) }
+    };
+    let from = Pose { position: begin.position - Vec2::from_heading(begin.heading) * behind_m, ..begin };
+    let actor =
+        |id: &str, kind, size, plan| Actor { id: id.to_owned(), kind, size, mass_kg: None, parts: Vec::new(), plan };
+    let partner = match pace.driven_m {
+        0.0 => ActorPlan::standing(at(begin)),
+        _ => on(pace.speed_mps, begin, pace.acts),
+    };
+    let pusher = on(pusher_mps, from, Vec::new());
+    vec![actor("cp", cp.kind, cp.size, partner), actor("pusher", kind, size, pusher)]
 }

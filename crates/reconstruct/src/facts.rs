@@ -31,7 +31,6 @@ use recrash_model::metrics::{Check, CheckKind, CheckResult};
 use recrash_model::narrative::FirstMover;
 use recrash_model::rollout::{ActorState, ActorTrack, EventKind, Rollout, STEP_S};
 use recrash_model::scenario::MissionStop;
-use recrash_model::vehicle::VehicleSpec;
 use recrash_model::zones::ContactZone;
 use recrash_roads::{RoadPart, Scenario};
 
@@ -224,7 +223,11 @@ pub(crate) fn facts(told: &Told, scenario: &Scenario, rollout: &Rollout) -> Vec<
         let road_rad = ego_track.states[0].heading;
         let keeps_lane = kind == CheckKind::CpMovement && told.keeps_its_lane();
         let way = Way { scenario, track, other, met, time_s: touch.time_s, keeps_lane, road_rad };
-        if let Some((expected, result, observed)) = movement::check(side, &way) {
+        let slides =
+            kind == CheckKind::CpMovement && keeping::slides(track.kind, until_touched(rollout, track, touch.time_s));
+        let check = movement::check(side, &way);
+        let check = if slides { Some(as_nobody_drives(check)) } else { check };
+        if let Some((expected, result, observed)) = check {
             list.push(Check { kind, expected, observed, result });
         }
     }
@@ -572,15 +575,6 @@ fn first_touch(rollout: &Rollout) -> Option<Touch<'_>> {
 /// Who turns back by more than this on its way swings. [deg]
 const MOST_BACK_DEG: f64 = 30.0;
 
-/// Nothing that is longer than this on wheels drives a tighter circle, or feels more sideways, by a step of this. [m, m, m/s^2, rad]
-const WHEELED_M: f64 = 2.5;
-const TIGHTEST_M: f64 = 4.5;
-const SIDEWAYS_MPS2: f64 = 6.0;
-const SKIDS_RAD: f64 = 0.03;
-
-/// And who is slow does not turn on the spot. [rad]
-const PIVOTS_RAD: f64 = 0.005;
-
 /// Who meets the other earlier or later than this has touched it elsewhere than was staged. [s]
 const AS_STAGED_S: f64 = 0.15;
 
@@ -621,18 +615,36 @@ pub(crate) fn strays(told: &Told, scenario: &Scenario, rollout: &Rollout) -> boo
     if told.keeps_direction() && track.states[..=until].iter().step_by(10).filter(|state| oncoming(state)).count() > 1 {
         return true;
     }
-    let turns = || track.states[..=until].windows(2).map(|pair| math::wrap_angle(pair[1].heading - pair[0].heading));
-    let wheels = VehicleSpec::of(told.cp.kind).length_m > WHEELED_M;
-    let tighter = |(turn, state): (f64, &ActorState)| {
-        let speed_mps = state.velocity().length().max(0.1);
-        let skids = turn.abs() > SKIDS_RAD + STEP_S * (speed_mps / TIGHTEST_M).min(SIDEWAYS_MPS2 / speed_mps);
-        wheels && (skids || turn.abs() > PIVOTS_RAD + STEP_S * speed_mps / TIGHTEST_M)
+    let off_road = |id: &str| {
+        let other = rollout.actors.iter().find(|track| track.id == id)?;
+        let until = until_touched(rollout, other, touch.time_s);
+        Some(until.iter().step_by(10).any(|state| !scenario.network().on_road(state.position())))
     };
-    if turns().zip(&track.states).any(tighter) {
+    if keeping::is_tight(told.cp.kind, until_touched(rollout, track, touch.time_s)) || off_road("pusher") == Some(true)
+    {
         return true;
     }
-    let (all, net) = turns().fold((0.0, 0.0), |(all, net), turn| (all + turn.abs(), net + turn));
+    let turns = track.states[..=until].windows(2).map(|pair| math::wrap_angle(pair[1].heading - pair[0].heading));
+    let (all, net) = turns.fold((0.0, 0.0), |(all, net), turn| (all + turn.abs(), net + turn));
     beside || (all - net.abs()).to_degrees() > MOST_BACK_DEG
+}
+
+/// What is said of a movement that nobody drives, whatever is told of it.
+fn as_nobody_drives(check: Option<(String, CheckResult, String)>) -> (String, CheckResult, String) {
+    let (expected, seen) = check.map_or_else(Default::default, |(expected, _, seen)| (expected, seen + ", "));
+    let expected = if expected.is_empty() { "as somebody drives".to_owned() } else { expected };
+    (expected, CheckResult::NotShown, seen + "as nobody drives")
+}
+
+/// Where somebody was until the contact, or until another touched it.
+fn until_touched<'a>(rollout: &Rollout, track: &'a ActorTrack, contact_s: f64) -> &'a [ActorState] {
+    let number = rollout.actors.iter().position(|other| other.id == track.id);
+    let touched = rollout.events.iter().find(|event| match event.kind {
+        EventKind::Contact { a, b, .. } => number == Some(a) || number == Some(b),
+        _ => false,
+    });
+    let until_s = touched.map_or(contact_s, |event| event.time_s.min(contact_s));
+    &track.states[..=((until_s / STEP_S) as usize).min(track.states.len() - 1)]
 }
 
 /// For how long the partner is off its lane.

@@ -14,6 +14,7 @@ use recrash_model::kinds::PartnerKind;
 use recrash_model::scenario::{GraphMap, JunctionSpec, LinePiece, MapSpec, RoadSpec, RoadStart, Strip, StripKind};
 use recrash_model::template::Movement;
 use recrash_model::vehicle::VehicleSpec;
+use recrash_model::zones::ContactZone;
 use recrash_roads::{LanePath, RoadNetwork};
 use std::rc::Rc;
 use std::sync::Arc;
@@ -207,14 +208,7 @@ pub(crate) fn ground_for(told: &Told) -> Ground {
     };
     let lanes = right.iter().filter(|strip| strip.kind == StripKind::Driving).count();
     let beside = right.iter().map(|strip| strip.kind).filter(|kind| *kind != StripKind::Driving).collect();
-    // The rightmost lane, but for a partner that comes by on the right.
-    let to_right = told.sv_aside().is_some_and(|aside| aside.to_t_m >= LANE_M);
-    let usual = match lanes {
-        _ if one_way => 0,
-        _ if told.edge == Some(LeftRight::Left) || told.layout.left_to_come || told.is_met_over_line() => 0,
-        2.. if told.edge.is_none() && (to_right || passes_right(told)) => lanes - 2,
-        _ => lanes - 1,
-    };
+    let usual = usual_lane(told, lanes, one_way);
     let lane = told_lane(told, lanes).unwrap_or(usual);
     let start = RoadStart::At { x_m: -APPROACH_M, y_m: (lane as f64 + 0.5) * LANE_M, heading_deg: 0.0 };
     let map = GraphMap {
@@ -364,6 +358,17 @@ impl Told {
     }
 }
 
+/// The ego's lane, where none is told: the rightmost, but for a partner that comes by on the right, or where the ego leaves it to the right.
+fn usual_lane(told: &Told, lanes: usize, one_way: bool) -> usize {
+    let to_right = told.sv_aside().is_some_and(|aside| aside.to_t_m >= LANE_M);
+    match lanes {
+        _ if one_way => 0,
+        _ if told.edge == Some(LeftRight::Left) || told.layout.left_to_come || told.is_met_over_line() => 0,
+        2.. if told.edge.is_none() && (to_right || passes_right(told)) => lanes - 2,
+        _ => lanes - 1,
+    }
+}
+
 /// The ego's lane, where it is told, 0 is the leftmost.
 fn told_lane(told: &Told, lanes: usize) -> Option<usize> {
     // Of two lanes that turn the ego's is the other one.
@@ -419,13 +424,13 @@ fn passes_right(told: &Told) -> bool {
     let in_lane = told.cp.lane.and_then(strip_of).is_none();
     // Who stands beside the lanes does so beside the outermost.
     let in_lane = in_lane && !told.stands_beside(false);
+    let touched = |zone: &ContactZone| matches!(zone, ContactZone::Right | ContactZone::FrontRight);
+    let moves = told.cp.state == ContactState::Moving;
+    let passes = told.cp.movement == Some(Movement::Passing) && side_of(&told.sv.zones) == Some(-1.0)
+        || told.cp.passes_on() == Some(LeftRight::Right);
+    let by = moves && told.sv.zones.iter().any(touched) || passes;
     in_lane && matches!(told.origin, Origin::Beside { side: LeftRight::Right })
-        || in_lane
-            && told.origin == Origin::Behind
-            && told.cp.state == ContactState::Moving
-            && told.sv.zones.iter().any(|zone| {
-                matches!(zone, recrash_model::zones::ContactZone::Right | recrash_model::zones::ContactZone::FrontRight)
-            })
+        || in_lane && told.origin == Origin::Behind && by
 }
 
 /// Who is no longer than this has room between the ego and the stop line. [m]
@@ -497,9 +502,8 @@ fn junction(told: &Told, crossing: bool) -> Ground {
         Turning::Left => ("left+", told_lane(told, lanes).unwrap_or(0)),
         Turning::Right => ("right+", told_lane(told, lanes).unwrap_or(lanes - 1)),
         Turning::No | Turning::Round => {
-            let left = one_way || told.edge == Some(LeftRight::Left) || told.layout.left_to_come;
-            let left = left || told.is_met_over_line();
-            ("ahead+", told_lane(told, lanes).unwrap_or(if left { 0 } else { lanes - 1 }))
+            let usual = if at_kerb { lanes - 1 } else { usual_lane(told, lanes, one_way) };
+            ("ahead+", told_lane(told, lanes).unwrap_or(usual))
         }
     };
     // The ego's lane lies on the x axis, or beside it.

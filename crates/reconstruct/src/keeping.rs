@@ -1,6 +1,7 @@
-//! Whether a partner keeps a lane of its own direction until it leaves it for what is told of it.
+//! Whether a partner keeps a lane of its own direction until it leaves it for what is told of it, and drives as a vehicle can.
 
 use crate::acts::Doing;
+use crate::came::{TIGHTEST_M, WHEELED_M};
 use crate::extras::STANDS_MPS;
 use crate::ground::LANE_M;
 use crate::lateral::is_on_foot;
@@ -14,6 +15,7 @@ use recrash_model::math;
 use recrash_model::rollout::{ActorState, ActorTrack, STEP_S};
 use recrash_model::scenario::StripKind;
 use recrash_model::template::Movement;
+use recrash_model::vehicle::VehicleSpec;
 use recrash_roads::{RoadPart, Scenario};
 
 /// Who keeps its lane is no farther beside its middle; who is narrow, where its box stays in the lane. [m]
@@ -246,4 +248,36 @@ pub(crate) fn leaves_whom_it_passes(told: &Told, ego: &ActorTrack, track: &Actor
     let along = Vec2::from_heading(other.heading);
     let away_mps = along.cross(met.velocity()) * along.cross(met.position() - other.position()).signum();
     told.passes_from_behind() && beside && away_mps > 0.0
+}
+
+/// What somebody feels sideways at most; it turns by no more than the second and what its circle or that allows in a step, nor by the third,
+/// however slow it is, and what its circle allows; by the fourth and the first of these nobody turns who drives. [m/s^2, rad]
+const SKIDS_MPS2: f64 = 6.0;
+const SKIDS_RAD: f64 = 0.03;
+const PIVOTS_RAD: f64 = 0.005;
+const SLIDES_RAD: f64 = 0.07;
+
+/// By how much somebody on wheels turns in steps in which its axle rolls, and how fast that does; nothing of who walks. [rad, m/s]
+fn turns(kind: PartnerKind, states: &[ActorState]) -> impl Iterator<Item = (f64, f64)> {
+    let wheels = VehicleSpec::of(kind).length_m > WHEELED_M;
+    // Who pivots swings its middle: that does not roll. Where it changes gear it stands for a step.
+    let steps = states.windows(2).map(|pair| (math::wrap_angle(pair[1].heading - pair[0].heading).abs(), pair[0]));
+    steps.map(|(turn, state)| (turn, state.speed().abs())).filter(move |(_, mps)| wheels && *mps > STANDS_MPS)
+}
+
+/// What somebody turns at most in a step, by its circle and what it feels sideways. [rad]
+fn most_rad(speed_mps: f64) -> f64 {
+    STEP_S * (speed_mps / TIGHTEST_M).min(SKIDS_MPS2 / speed_mps)
+}
+
+/// Whether somebody turns tighter than it can.
+pub(crate) fn is_tight(kind: PartnerKind, states: &[ActorState]) -> bool {
+    turns(kind, states).any(|(turn, speed_mps)| {
+        turn > SKIDS_RAD + most_rad(speed_mps) || turn > PIVOTS_RAD + STEP_S * speed_mps / TIGHTEST_M
+    })
+}
+
+/// Whether it turns on the spot, slides or jumps, as nobody drives.
+pub(crate) fn slides(kind: PartnerKind, states: &[ActorState]) -> bool {
+    turns(kind, states).any(|(turn, speed_mps)| turn > SLIDES_RAD + most_rad(speed_mps))
 }

@@ -68,7 +68,8 @@ impl Lanes {
         };
         // Of who leaves its line beside the lane that it comes from, and no farther than beside the one that it goes to.
         let beside = |from_m: f64, to_m: f64| from_m > BESIDE_M && from_m.min(to_m) < FARTHEST_M;
-        match told.origin {
+        let from = told.bus_lane().map_or(told.origin, |side| Origin::Beside { side });
+        match from {
             Origin::Beside { side: LeftRight::Left } => beside(lane_m - from_m, lane_m - to_m),
             Origin::Beside { side: LeftRight::Right } => beside(from_m - lane_m, to_m - lane_m),
             // Of who leaves its line also in the lane that it goes to.

@@ -1,6 +1,7 @@
 //! Partners that leave the kerb, a stall, a driveway or their lane: from where they do, and when.
 
 use crate::acts::Doing;
+use crate::came::WHEELED_M;
 use crate::ground::{Ground, LANE_M};
 use crate::lanes;
 use crate::pace::{Pace, ego_paces, first_time, start_over, when};
@@ -17,6 +18,7 @@ use recrash_model::kinds::PartnerKind;
 use recrash_model::math;
 use recrash_model::scenario::{ActorPlan, Deed, Leg, Place, StripKind};
 use recrash_model::template::Movement;
+use recrash_model::vehicle::VehicleSpec;
 use recrash_roads::Course;
 
 /// From how far away somebody pulls out at least. [m]
@@ -89,8 +91,9 @@ impl Told {
             (Some(cp), sv) if strip_of(cp).is_some() => sv != Some(cp),
             (Some(LaneWord::Opposing), _) => false,
             (Some(cp), Some(sv)) => cp != sv,
-            _ => false,
+            _ => self.bus_lane().is_some(),
         };
+        let own_lane = own_lane || self.leaves_to_who_passes();
         // Who changes lanes to pass has not come back where it touches no front.
         let pulls_out = self.cp.passes && !self.sv.zones.iter().any(|zone| zone.is_front());
         self.origin == Origin::Behind
@@ -100,9 +103,24 @@ impl Told {
             && !own_lane
     }
 
+    /// On which side of the ego the partner passes it in the lane for buses, in which the ego is not.
+    pub(crate) fn bus_lane(&self) -> Option<LeftRight> {
+        let alone = self.cp.lane == Some(LaneWord::Bus) && self.sv.lane != Some(LaneWord::Bus);
+        let touched =
+            || side_of(&self.sv.zones).map(|side| if side > 0.0 { LeftRight::Left } else { LeftRight::Right });
+        self.cp.passes_on().or_else(touched).filter(|_| alone && self.origin == Origin::Behind)
+    }
+
+    /// Whether the ego changes into the lane in which the partner passes it, and meets it on that side.
+    fn leaves_to_who_passes(&self) -> bool {
+        let left_m = self.sv_aside().map_or(0.0, |aside| aside.from_t_m - aside.to_t_m);
+        let touched = side_of(&self.sv.zones).unwrap_or(0.0);
+        self.cp.movement == Some(Movement::Passing) && left_m * touched >= LANE_M
+    }
+
     /// Whether the partner stood behind the ego and changes lanes to the side on which it touches it then: out of the ego's lane.
     fn goes_out(&self) -> bool {
-        let to = self.cp.aside.or_else(|| self.cp.acts.iter().rev().find_map(Doing::passes_on));
+        let to = self.cp.aside.or_else(|| self.cp.passes_on());
         let touched = side_of(&self.sv.zones).map(|side| if side > 0.0 { LeftRight::Left } else { LeftRight::Right });
         let changes = self.cp.movement == Some(Movement::ChangingLanes);
         changes && self.cp.stood_first && to.is_some() && to == touched && !self.plainly
@@ -269,6 +287,25 @@ pub(crate) fn line_y_m(told: &Told, staging: &Staging) -> Option<f64> {
         })
 }
 
+/// How far somebody drives who leaves its line for where it touches, in no tighter bend than who sets off steers; nothing of who walks. [m]
+pub(crate) fn room_m(told: &Told, staging: &Staging) -> f64 {
+    let (cp, length_m) = (staging.cp, size_of(&told.cp).0);
+    if VehicleSpec::of(told.cp.kind).length_m <= WHEELED_M {
+        return 0.0;
+    }
+    let (turn, came) = (math::wrap_angle(cp.heading - staging.cp_came), Vec2::from_heading(staging.cp_came));
+    let line_y_m = line_y_m(told, staging).filter(|_| told.cp.turning == Turning::No);
+    // Its rear axle goes over from one line to the other.
+    let arm_m = recrash_roads::arm_m(told.cp.kind, length_m);
+    let swings_m = arm_m * math::sin(turn.abs());
+    let aside_m = line_y_m.map_or(swings_m, |line_y_m| {
+        let over = Vec2::new(0.0, cp.position.y - line_y_m) - Vec2::from_heading(cp.heading) * arm_m;
+        came.cross(over).abs()
+    });
+    let radius_m = STOOD_RADIUS_M.max(STOOD_LENGTHS * length_m);
+    (4.0 * radius_m * aside_m).sqrt() + radius_m * turn.abs()
+}
+
 /// On which side of the ego's lane the partner comes along.
 fn beside(told: &Told) -> Option<LeftRight> {
     match told.origin {
@@ -318,9 +355,10 @@ pub(crate) fn keeps_lane(told: &Told, staging: &Staging, pace: &Pace, arm_m: f64
 const OUT_M: f64 = 6.0;
 const COMES_OUT_M: f64 = 24.0;
 
-/// The same of who stood close behind it, with no tighter bend. [m]
+/// The same of who stood close behind it, with no tighter bend, or of so much of its length. [m]
 const STOOD_OUT_M: f64 = 4.0;
 const STOOD_RADIUS_M: f64 = 5.5;
+const STOOD_LENGTHS: f64 = 0.5;
 
 /// Who comes from behind the ego and passes it comes out of its lane, goes along beside it, and then comes too near: where it begins, and
 /// the poses that it drives by.

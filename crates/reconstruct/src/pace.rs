@@ -57,6 +57,7 @@ const LEAST_ROLL_S: f64 = 0.3;
 const LONGEST_START_S: f64 = 6.0;
 
 /// The speeds of one side until the contact: speed at the start, acts, and what is driven until then. [m/s, m]
+#[derive(Clone)]
 pub(crate) struct Pace {
     pub(crate) speed_mps: f64,
     pub(crate) acts: Vec<Act>,
@@ -459,6 +460,12 @@ fn partner_pace(told: &Told, staging: &Staging, (ego, ego_m, before_s): (&Pace, 
         ContactState::Stopped if told.origin == Origin::Ahead && usual.driven_m > ego_m - 0.3 => STANDING,
         // It stood before the story begins.
         ContactState::Stopped if cp.stands_from_start && told.origin != Origin::Behind => STANDING,
+        // Who sets off has room to leave its line.
+        ContactState::Moving | ContactState::SettingOff if usual.speed_mps == 0.0 && !told.waits_behind() => {
+            let room_m = lateral::room_m(told, staging);
+            let more = start_over(contact_s, cp.speed_mps, room_m).filter(|_| room_m > usual.driven_m);
+            more.unwrap_or(usual)
+        }
         _ => usual,
     }
 }

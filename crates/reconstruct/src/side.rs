@@ -117,6 +117,11 @@ impl Side {
     pub(crate) fn enters(&self) -> bool {
         self.acts.iter().any(Doing::is_entry)
     }
+
+    /// To which side it passed last, or was about to.
+    pub(crate) fn passes_on(&self) -> Option<LeftRight> {
+        self.acts.iter().rev().find_map(Doing::passes_on)
+    }
 }
 
 /// What is told of one side.

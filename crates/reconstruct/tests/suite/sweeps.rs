@@ -55,6 +55,18 @@ fn a_front_that_touches_does_not_pass_for_a_rear_that_does() {
 }
 
 #[test]
+fn a_front_corner_does_not_pass_for_a_flank_and_a_rear_of_which_both_are_told() {
+    let mut account = story(CUTS_IN);
+    let partner = account.partner.as_mut().expect("a partner");
+    partner.zones.push(Fact::by_rule(ContactZone::Right, "made for this test"));
+    let front = missed(&account, |less| {
+        let partner = less.partner.as_mut().expect("a partner");
+        partner.zones.iter_mut().for_each(|zone| zone.value = ContactZone::FrontRight);
+    });
+    assert_eq!(front, [CheckKind::CpZones]);
+}
+
+#[test]
 fn who_sets_off_towards_one_that_is_parked_is_not_there_from_the_start() {
     let mut account = story(
         "The AV was parked at the curb behind a parked van. The AV proceeded to maneuver forward and to the left, and the front right of the \
