@@ -448,7 +448,11 @@ fn never_at_the_kerb(account: &Account, draft: &mut ScenarioDraft) -> bool {
     true
 }
 
-fn thing_lies(_: &Account, draft: &mut ScenarioDraft) -> bool {
+fn thing_lies(account: &Account, draft: &mut ScenarioDraft) -> bool {
+    // What appears from under the vehicle ahead may have lain there.
+    if told(&account.came_from) == Some(Origin::Ahead) {
+        return false;
+    }
     let rolls = |draft: &ScenarioDraft| {
         draft.actors.iter().any(|actor| actor.kind == PartnerKind::FixedObject && !actor.plan.course.is_empty())
     };
