@@ -451,15 +451,17 @@ impl Told {
         }
     }
 
-    /// The same at other times, to try where what one of the two did before or behind the other is not shown as it is told.
-    pub(crate) fn in_other_times(&self) -> impl Iterator<Item = Self> {
+    /// The same at other times, to try where what one of the two did before or behind the other is not shown as it is told: the ego's acts
+    /// come later against the partner's where that stands for longer, or the ego for a shorter time; the partner's, where the ego stands for
+    /// longer; who is slower may be for both. Of each whether it is for the ego's acts, and for the partner's.
+    pub(crate) fn in_other_times(&self) -> impl Iterator<Item = (Self, [bool; 2])> {
         let differs = self.sv.acts.iter().chain(&self.cp.acts).any(Doing::is_behind_other);
         let tried = OTHER_TIMES.into_iter().filter(move |_| differs);
         tried.map(|(longer_s, slower)| {
             let mut told = self.clone();
             told.contact_s += longer_s[0].max(longer_s[1]).max(0.0);
             let choices = Choices { longer_s, partner_speed: slower * self.choices.partner_speed, ..self.choices };
-            told.choosing(choices)
+            (told.choosing(choices), [longer_s[0] <= 0.0, longer_s[0] > 0.0 || slower < 1.0])
         })
     }
 
