@@ -721,7 +721,7 @@ fn turn_from_line_m(told: &Told, staging: &Staging) -> Option<f64> {
     };
     let turn = math::wrap_angle(staging.cp.heading - staging.cp_came).abs();
     let (sine, radius_m) = (math::sin(turn), lateral::turn_m(told));
-    (along_m > radius_m * sine).then(|| along_m + radius_m * (turn - sine))
+    (along_m > radius_m * sine).then_some(along_m + radius_m * (turn - sine))
 }
 
 /// From a stand to a speed, and so far: it gains its speed on the way, or earlier and keeps it.
