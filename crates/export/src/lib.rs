@@ -18,6 +18,7 @@ mod xml;
 
 pub use import::{MAX_IMPORT_BYTES, import, parameter_name};
 
+use recrash_model::narrative::Origin;
 use recrash_model::rollout::Rollout;
 use recrash_model::scenario::ScenarioDraft;
 use recrash_model::tuning::Parameter;
@@ -155,12 +156,23 @@ pub(crate) fn title(draft: &ScenarioDraft) -> String {
     format!("{}{template}", draft.id)
 }
 
-/// What stands at the top of every file, on one line: where it comes from.
+/// What stands at the top of every file, on one line: where it comes from, and whose crash it tells.
 pub(crate) fn comment(draft: &ScenarioDraft) -> String {
     let records: Vec<String> = draft.source.records.iter().map(ToString::to_string).collect();
     let records = if records.is_empty() { "none".to_owned() } else { records.join(", ") };
-    let text = format!("{}. Made by recrash from crash records: {records}. {}", title(draft), draft.source.narrative);
+    let whose = whose_crash(draft).map_or_else(String::new, |whose| format!(" Whose crash: {whose}."));
+    let title = title(draft);
+    let text = format!("{title}. Made by recrash from crash records: {records}.{whose} {}", draft.source.narrative);
     one_line(text.trim_end())
+}
+
+/// Whose crash a scenario tells, where that is known: its own record's, another one's, or nobody's.
+pub(crate) fn whose_crash(draft: &ScenarioDraft) -> Option<String> {
+    Some(match draft.source.origin.as_ref()? {
+        Origin::Own => "own record".to_owned(),
+        Origin::Other { record, .. } => format!("another record, {record}"),
+        Origin::Invented { .. } => "invented, no record".to_owned(),
+    })
 }
 
 /// Text that cannot end a line.

@@ -16,6 +16,8 @@ struct MetaDriveScenario<'a> {
     id: &'a str,
     title: String,
     records: Vec<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    whose_crash: Option<String>,
     narrative: &'a str,
     run: Run,
     /// What MetaDrive has no place for.
@@ -32,6 +34,7 @@ pub(crate) fn files(scenario: &Scenario) -> Result<Vec<ExportFile>, ExportError>
         id: &draft.id,
         title: crate::title(draft),
         records: draft.source.records.iter().map(ToString::to_string).collect(),
+        whose_crash: crate::whose_crash(draft),
         narrative: &draft.source.narrative,
         run: Run::new(scenario, handover(scenario)).map_err(cannot_hold)?,
         not_carried: json!({ "environment": { "lighting": draft.environment.lighting, "weather": draft.environment.weather } }),

@@ -132,7 +132,7 @@ impl About {
 pub fn scenario_content(draft: &ScenarioDraft) -> String {
     let bare = ScenarioDraft { source: Source { seed: draft.source.seed, ..Source::default() }, ..draft.clone() };
     let mut hash = Fnv::default();
-    hash.write(serde_json::to_string(&bare).unwrap_or_default().as_bytes());
+    hash.write(serde_json::to_string(&bare).expect("a scenario can be written").as_bytes());
     hash.hexadecimal()
 }
 
@@ -140,7 +140,7 @@ impl FrozenSuite {
     /// The name of a suite by its content.
     pub fn content_of(profile: &SystemProfile, tests: &[FrozenTest]) -> String {
         let mut hash = Fnv::default();
-        hash.write_text(&serde_json::to_string(&profile.failure).unwrap_or_default());
+        hash.write_text(&serde_json::to_string(&profile.failure).expect("limits can be written"));
         for test in tests {
             hash.write_text(&test.id);
             hash.write_text(&test.content);

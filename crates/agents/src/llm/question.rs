@@ -91,7 +91,7 @@ impl Question {
     /// not part of it: the same question asked twice has one answer.
     pub fn hash(&self) -> String {
         let sent = (&self.model, &self.system, &self.turns, &self.schema_name, &self.schema);
-        sha256(&serde_json::to_vec(&sent).unwrap_or_default())
+        sha256(&serde_json::to_vec(&sent).expect("texts can be written"))
     }
 
     /// Bytes of what is sent, about.

@@ -47,6 +47,7 @@ fn description(scenario: &Scenario, rollout: &Rollout) -> Value {
         ("old_origin_in_current_coordinate", point(-origin)),
         ("title", crate::title(draft).into()),
         ("records", Value::texts(records)),
+        ("whose_crash", crate::whose_crash(draft).unwrap_or_default().into()),
         ("narrative", draft.source.narrative.clone().into()),
         ("simulator", rollout.simulator.clone().into()),
         ("ego", rollout.ego.clone().into()),

@@ -4,6 +4,8 @@ use crate::common;
 
 use crate::common::{CASES, scenario, straight_on, two_parameters};
 use recrash_export::{ExportError, ExportOptions, Format, PartnersAs, export};
+use recrash_model::narrative::Origin;
+use recrash_model::record::RecordRef;
 
 #[test]
 fn formats_are_known_by_name_and_nothing_else_is() {
@@ -53,6 +55,29 @@ fn every_file_begins_with_title_and_source_records() {
                 let head: String = text.lines().take(lines).collect();
                 let record = scenario.draft().source.records[0].to_string();
                 assert!(head.contains(name) && head.contains(&record), "{}: {head}", file.name);
+            }
+        }
+    }
+}
+
+#[test]
+fn every_file_says_whose_crash_it_tells() {
+    let reason = || "a test".to_owned();
+    let other = RecordRef::try_from("30270-99/2".to_owned()).expect("a report");
+    let of = [
+        (Some(Origin::Own), "own record"),
+        (Some(Origin::Other { record: other, reason: reason() }), "another record, 30270-99/2"),
+        (Some(Origin::Invented { reason: reason() }), "invented, no record"),
+    ];
+    for (origin, told) in of {
+        let mut draft = common::draft(CASES[0].1);
+        draft.source.origin = origin;
+        let scenario = recrash_roads::check(draft).unwrap().value;
+        let rollout = straight_on(&scenario, 2);
+        for format in Format::ALL {
+            let files = export(&scenario, Some(&rollout), &[], &ExportOptions::new(format)).unwrap();
+            for file in files.iter().filter(|file| file.name != "run_metadrive.py") {
+                assert!(String::from_utf8_lossy(&file.content).contains(told), "{}: {told}", file.name);
             }
         }
     }

@@ -152,7 +152,7 @@ fn tell_joined(content: &mut FileContent, mapping: &Mapping, joined: &[Joined<'_
 
 fn no_file(mapping: &Mapping, line: usize, key: String, name: &str, files: &[MappedFile<'_>]) -> IngestError {
     let given: Vec<&str> = files.iter().map(|file| file.name).collect();
-    let message = format!("\"{name}\" is not among the files given ({}); give it with --records", given.join(", "));
+    let message = format!("\"{name}\" is not among the files given ({}); name it among the records", given.join(", "));
     IngestError::Mapping(mapping.error(line, key, message))
 }
 
