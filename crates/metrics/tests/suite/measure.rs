@@ -118,6 +118,19 @@ fn a_near_miss_side_by_side_is_a_failure_and_wider_is_none() {
 }
 
 #[test]
+fn who_is_put_beside_the_ego_and_stays_there_is_no_near_miss_and_who_comes_nearer_is_one() {
+    let network = straight();
+    let way = path(&network, Approach::Same, Turn::Straight, 1);
+    for (nearer_m, expected) in [(0.0, vec![]), (0.5, vec![FindingKind::NearMiss])] {
+        let ego = drive(&way, 40.0, 60, |_| 12.0);
+        let other = drive_at(&way, 40.0, 60, |_| 12.0, |time| -3.5 + nearer_m * (time / 4.0).min(1.0));
+        let rollout = rollout(ego, vec![other]);
+        let metrics = measure(&network, &way, 12.0, &rollout);
+        assert_eq!(kinds(&rollout, &metrics), expected, "{nearer_m} m nearer");
+    }
+}
+
+#[test]
 fn hard_braking_behind_a_stopped_car_is_hard_but_no_phantom() {
     let network = straight();
     let way = path(&network, Approach::Same, Turn::Straight, 1);
