@@ -13,7 +13,7 @@ fn cases(place: &Place) -> Vec<Value> {
 
 #[test]
 fn every_case_shows_its_own_crash_and_says_whether_the_system_met_it() {
-    let place = Place::made(&TOLD);
+    let place = Place::made(&["run", "--profile", "open", "--budget", "12", "--tune-budget", "6", "--seed", "3"]);
     let summary = json(&place, "suite/summary.json");
     let accounts = &summary["accounts"];
     let (told, readable) = (accounts["told"].as_u64().unwrap(), accounts["readable"].as_u64().unwrap());
@@ -109,11 +109,11 @@ fn new_records_say_what_they_bring_and_leave_the_rest() {
         let words = ["run", "--profile", "open", "--records", "crashes.csv", "--budget", "all", "--tune-budget", "1"];
         place.run(&words)
     };
-    place.few_records(100);
+    place.few_records(40);
     let (code, _, remarks) = run();
     assert_eq!(code, 0, "{remarks}");
     assert!(!remarks.contains("incidents are new"), "{remarks}");
-    place.few_records(160);
+    place.few_records(80);
     let (code, _, remarks) = run();
     assert_eq!(code, 0, "{remarks}");
     assert!(remarks.contains("readable incidents are new: "), "{remarks}");

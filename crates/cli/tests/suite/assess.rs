@@ -1,6 +1,6 @@
 //! What of a corpus a suite covers, and how bad its failures are.
 
-use crate::common::{Place, SMALL, TOLD};
+use crate::common::{FEW, Place, SMALL, TOLD};
 use serde_json::Value;
 
 fn told(place: &Place, arguments: &[&str]) -> Value {
@@ -104,7 +104,7 @@ fn a_search_that_aims_at_severity_keeps_no_milder_contact_than_the_first() {
     let place = Place::new();
     let arguments =
         ["run", "--profile", "open", "--budget", "8", "--tune-budget", "16", "--seed", "3", "--aim", "severity"];
-    let (code, _, remarks) = place.run(&arguments);
+    let (code, _, remarks) = place.run(&[&arguments[..], &["--records", FEW]].concat());
     assert_eq!(code, 0, "{remarks}");
     let summary: Value = serde_json::from_slice(&std::fs::read(place.path("suite/summary.json")).unwrap()).unwrap();
     assert!(summary["command"].as_str().unwrap().ends_with("--aim severity --seed 3"), "{}", summary["command"]);
@@ -139,7 +139,7 @@ fn what_cannot_be_told_is_refused_with_its_remedy() {
         assert!(code == 3 && remarks.contains("goes by templates"), "{code} {remarks}");
     }
     let half = Place::new();
-    let (code, _, remarks) = half.run(&["records", "--profile", "open", "--out", "suite"]);
+    let (code, _, remarks) = half.run(&["records", "--profile", "open", "--records", FEW, "--out", "suite"]);
     assert_eq!(code, 0, "{remarks}");
     let (code, _, remarks) = half.run(&["coverage", "suite"]);
     assert!(code == 2 && remarks.contains("recrash report --out"), "{code} {remarks}");

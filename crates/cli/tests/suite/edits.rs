@@ -1,10 +1,10 @@
 //! What a person did in a suite is kept, and what nobody asked for is not replaced.
 
-use crate::common::{Place, driving_ego};
+use crate::common::{FEW, Place, driving_ego};
 use serde_json::Value;
 use std::path::PathBuf;
 
-const THREE: [&str; 6] = ["run", "--quiet", "--budget", "3", "--tune-budget", "4"];
+const THREE: [&str; 8] = ["run", "--quiet", "--records", FEW, "--budget", "3", "--tune-budget", "4"];
 
 fn run(place: &Place, words: &[&str]) -> String {
     let (code, out, error) = place.run(words);
@@ -97,8 +97,8 @@ fn an_edit_that_is_no_scenario_stops_its_case_alone_and_is_kept() {
 fn an_edited_case_that_leaves_the_suite_leaves_its_edit_there() {
     let place = Place::made(&THREE);
     let all = files(&place, "4-scenarios");
-    let edited: Vec<Vec<u8>> = all.iter().map(|file| edit(file, "/ego/target_speed_mps", 4.321.into())).collect();
-    let (code, _, error) = place.run(&["run", "--budget", "1", "--tune-budget", "4"]);
+    let edited: Vec<Vec<u8>> = all.iter().map(|file| edit(file, "/ego/target_speed_mps", slower(file))).collect();
+    let (code, _, error) = place.run(&[&["run", "--budget", "1"], &THREE[2..4], &THREE[6..]].concat());
     assert_eq!(code, 0, "{error}");
     for (file, bytes) in all.iter().zip(&edited) {
         assert_eq!(&std::fs::read(file).unwrap(), bytes, "{}", file.display());
@@ -121,25 +121,26 @@ fn a_run_edited_by_hand_is_made_again_by_a_run_and_refused_by_a_report() {
 
 #[test]
 fn a_suite_of_other_records_or_of_another_profile_is_replaced_only_when_told() {
-    let place = Place::made(&THREE);
+    let sample = ["run", "--quiet", "--budget", "3", "--tune-budget", "4"];
+    let place = Place::made(&sample);
     std::fs::write(place.path("mine.csv"), recrash_records::SAMPLE_CSV).unwrap();
     let profile = include_str!("../../../../profiles/paper.toml").replace("name = \"paper\"", "name = \"other\"");
     std::fs::write(place.path("other.toml"), profile).unwrap();
     let saved = std::fs::read(place.path("suite/suite.json")).unwrap();
     for more in [["--records", "mine.csv"], ["--profile", "other.toml"]] {
-        let words = [&THREE[..], &more].concat();
+        let words = [&sample[..], &more].concat();
         let (code, _, error) = place.run(&words);
         assert_eq!(code, 2, "{error}");
         assert!(error.contains("--replace"), "{error}");
         assert_eq!(std::fs::read(place.path("suite/suite.json")).unwrap(), saved);
     }
-    run(&place, &[&THREE[..], &["--records", "mine.csv", "--replace"]].concat());
+    run(&place, &[&sample[..], &["--records", "mine.csv", "--replace"]].concat());
     // And back: real records are not replaced by the sample either.
-    let (code, _, error) = place.run(&THREE);
+    let (code, _, error) = place.run(&sample);
     assert_eq!(code, 2, "{error}");
     // A second file beside the first is welcome.
     std::fs::write(place.path("more.csv"), recrash_records::SAMPLE_CSV).unwrap();
-    run(&place, &[&THREE[..], &["--records", "mine.csv", "--records", "more.csv"]].concat());
+    run(&place, &[&sample[..], &["--records", "mine.csv", "--records", "more.csv"]].concat());
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Exports and imports as a user meets them: folders, exit codes, and the way there and back.
 
-use crate::common::{Place, recrash};
+use crate::common::{FEW, Place, recrash};
 use serde_json::Value;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -10,7 +10,7 @@ const USAGE: i32 = 2;
 /// Input that cannot be used.
 const BAD_INPUT: i32 = 3;
 
-const FOUR: [&str; 8] = ["run", "--quiet", "--budget", "4", "--tune-budget", "12", "--seed", "5"];
+const FOUR: [&str; 10] = ["run", "--quiet", "--records", FEW, "--budget", "4", "--tune-budget", "12", "--seed", "5"];
 
 /// A scenario in the paper's own dialect.
 const DIALECT: &str = r#"{"id": "dialect", "map_type": "X", "ego_turn": "straight", "lead_turn": "straight",

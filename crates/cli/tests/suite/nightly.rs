@@ -1,6 +1,6 @@
 //! Frozen suites, their results and comparisons, as a test engineer meets them each night.
 
-use crate::common::{Place, SMALL, TOLD};
+use crate::common::{FEW, Place, SMALL, TOLD};
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -106,7 +106,7 @@ fn accounts_go_along_without_the_words_and_say_whether_the_situation_was_met() {
 #[test]
 fn incidents_and_crash_types_go_along() {
     let place = Place::new();
-    let (code, told, errors) = place.run(&["reconstruct", "--to-dir", "scenes", "--json"]);
+    let (code, told, errors) = place.run(&["reconstruct", "--records", FEW, "--to-dir", "scenes", "--json"]);
     assert_eq!(code, 0, "{errors}");
     std::fs::write(place.path("told.json"), told).unwrap();
     let (code, _, errors) = place.run(&["freeze", "scenes", "--about", "told.json", "--out", "frozen", "--quiet"]);

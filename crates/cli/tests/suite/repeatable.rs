@@ -1,12 +1,12 @@
 //! The same command gives the same bytes: for any number of threads, twice, and after a kill at any moment.
 
-use crate::common::{Place, recrash};
+use crate::common::{FEW, Place, recrash};
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::Stdio;
 use std::time::{Duration, Instant};
 
-const SMALL: [&str; 6] = ["--budget", "5", "--tune-budget", "12", "--seed", "5"];
+const SMALL: [&str; 8] = ["--records", FEW, "--budget", "5", "--tune-budget", "12", "--seed", "5"];
 
 fn run(out: &Path, extra: &[&str]) {
     let out = out.to_str().unwrap();
@@ -42,7 +42,7 @@ fn another_seed_writes_other_scenarios_and_leaves_none_of_the_old() {
     let place = undisturbed();
     let (changed, fresh) = (place.path("suite"), place.path("fresh"));
     for out in [&changed, &fresh] {
-        let other = ["--budget", "4", "--tune-budget", "24", "--seed", "6"];
+        let other = ["--records", FEW, "--budget", "4", "--tune-budget", "24", "--seed", "6"];
         recrash(&["run", "--quiet", "--out", out.to_str().unwrap()]).args(other).assert().success();
     }
     assert_same_files(&changed, &fresh);
@@ -104,7 +104,7 @@ fn stages_one_by_one_give_what_run_gives() {
     let place = undisturbed();
     let (whole, parts) = (place.path("suite"), place.path("parts"));
     let out = parts.to_str().unwrap();
-    recrash(&["records", "--quiet", "--out", out]).assert().success();
+    recrash(&["records", "--quiet", "--records", FEW, "--out", out]).assert().success();
     recrash(&["select", "--quiet", "--out", out]).args(SMALL).assert().success();
     for stage in ["narrate", "design", "simulate", "tune", "report"] {
         recrash(&[stage, "--quiet", "--out", out]).assert().success();

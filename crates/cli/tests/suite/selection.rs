@@ -1,6 +1,6 @@
 //! `recrash select` and `recrash model`, as a user of them meets them.
 
-use crate::common::Place;
+use crate::common::{Place, copy};
 use serde_json::Value;
 
 fn json(place: &Place, arguments: &[&str]) -> Value {
@@ -95,8 +95,7 @@ fn every_option_of_the_choice_reaches_it() {
         &["--dimensions", "3"],
     ] {
         let out = format!("suite{}", options.join(""));
-        let (code, _, error) = place.run(&["records", "--quiet", "--out", &out]);
-        assert_eq!(code, 0, "{error}");
+        copy(&place.path("suite"), &place.path(&out));
         let other = json(&place, &[&["select", "--out", &out], options].concat());
         assert_ne!(other["clusters"], base["clusters"], "{options:?}");
         for pair in options.chunks(2) {

@@ -1,7 +1,7 @@
 //! What people see: clean text whoever wrote it, tables as wide as the terminal, and an end without a panic where nobody
 //! looks.
 
-use crate::common::{Place, SMALL, recrash};
+use crate::common::{FEW, Place, SMALL, recrash};
 use recrash_records::SAMPLE_CSV;
 use std::fs::File;
 use std::process::{Output, Stdio};
@@ -23,7 +23,7 @@ const PRINTING: [&[&str]; 8] = [
     &["--version"],
     &["doctor"],
     &["completions", "bash"],
-    &["run", "--budget", "2", "--tune-budget", "1", "--json"],
+    &["run", "--profile", "paper", "--records", FEW, "--budget", "2", "--tune-budget", "1", "--json"],
 ];
 
 #[test]

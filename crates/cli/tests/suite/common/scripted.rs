@@ -1,13 +1,13 @@
 //! A model that plays from a script: it answers with what the reader and the rules made of the same crash.
 
-use super::{Place, recrash};
+use super::{FEW, Place, recrash};
 use serde_json::{Value, json};
 use std::sync::OnceLock;
 
 /// The model, with a suite that the rules made.
 pub struct ScriptedModel {
     rules: Place,
-    /// The accounts that the built-in reader makes of the sample.
+    /// The accounts that the built-in reader makes of the few records.
     accounts: &'static [Value],
 }
 
@@ -16,11 +16,16 @@ impl ScriptedModel {
     pub fn new(options: &[&str]) -> Self {
         static ACCOUNTS: OnceLock<Value> = OnceLock::new();
         let read = ACCOUNTS.get_or_init(|| {
-            let read = recrash(&["read", "--json"]).output().unwrap();
+            let read = recrash(&["read", FEW, "--json"]).output().unwrap();
             serde_json::from_slice(&read.stdout).unwrap()
         });
         let rules = Place::made(&[&["run", "--quiet"], options].concat());
         Self { rules, accounts: read["accounts"].as_array().unwrap() }
+    }
+
+    /// What became of the suite that the rules made.
+    pub fn summary(&self) -> Value {
+        self.read("summary.json".to_owned())
     }
 
     fn read(&self, file: String) -> Value {
