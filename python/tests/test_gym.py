@@ -169,31 +169,29 @@ def test_a_function_replaces_the_reward_and_the_returns_are_its(crashes):
     assert ends > 3
 
 
-def test_a_split_has_no_crash_on_both_sides():
-    scenarios, _ = recrash.read().reconstruct()
-    train, held_out = split(scenarios, 0.25)
-    assert len(train) + len(held_out) == len(scenarios)
-    assert 0.15 < len(held_out) / len(scenarios) < 0.35
+def test_a_split_has_no_crash_on_both_sides(told):
+    train, held_out = split(told, 0.25)
+    assert len(train) + len(held_out) == len(told)
+    assert 0.15 < len(held_out) / len(told) < 0.35
 
     def reports(part):
         return {name.rsplit("/", 1)[0] for scenario in part for name in scenario.reports}
 
     assert not reports(train) & reports(held_out)
-    env = CrashVectorEnv(scenarios, 2, split="held_out")
+    env = CrashVectorEnv(told, 2, split="held_out")
     assert env.scenarios == held_out
 
 
-def test_a_curriculum_draws_the_types_that_it_names():
-    scenarios, _ = recrash.read().reconstruct()
-    env = CrashVectorEnv(scenarios, 400)
+def test_a_curriculum_draws_the_types_that_it_names(told):
+    env = CrashVectorEnv(told, 400)
     env.set_curriculum({"front_to_rear": 3.0, "backing": 1.0})
     _, infos = env.reset(seed=1)
-    drawn = [scenarios[number].crash_type for number in infos["scenario"]]
+    drawn = [told[number].crash_type for number in infos["scenario"]]
     assert set(drawn) == {"front_to_rear", "backing"}
     assert 250 < drawn.count("front_to_rear") < 350
     with pytest.raises(InputError, match="rear_end.*there are:.*front_to_rear"):
         env.set_curriculum({"rear_end": 1.0})
-    only = CrashVectorEnv(scenarios, 1, crash_types=["pedestrian"])
+    only = CrashVectorEnv(told, 1, crash_types=["pedestrian"])
     assert {scenario.crash_type for scenario in only.scenarios} == {"pedestrian"}
 
 

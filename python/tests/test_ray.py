@@ -220,8 +220,8 @@ def test_where_a_worker_has_no_metadrive_it_is_told(cluster, scenarios, tmp_path
 def test_a_corpus_is_reconstructed_and_tested_in_parts(cluster):
     import recrash.ray
 
-    rows = recrash.ray.corpus(where="road = street", ego="idm", batch=20).to_pylist()
-    accounts = recrash.read(where="road = street")
+    rows = recrash.ray.corpus(where="road = highway", ego="idm", batch=5).to_pylist()
+    accounts = recrash.read(where="road = highway")
     scenarios, made = accounts.reconstruct()
     assert [row["incident"] for row in rows] == accounts.table.to_dict()["incident"]
     assert [row["standing"] for row in rows] == made.to_dict()["standing"]

@@ -21,7 +21,7 @@ pub fn run(_: &mut Tally) -> Result {
         let (fresh, known) = (folder(name, "fresh")?, known(name)?);
         let mut command = Command::new(programs.join(name));
         command.arg(fresh).arg(known).arg(root().join("fuzz/corpus").join(name));
-        command.args(["-max_len=8192", "-max_total_time=20", "-verbosity=0"]);
+        command.args(["-max_len=8192", "-max_total_time=12", "-verbosity=0"]);
         command.arg(format!("-artifact_prefix={}/", folder(name, "findings")?.display()));
         let dictionary = root().join("fuzz/dictionaries").join(name);
         if dictionary.exists() {

@@ -25,7 +25,7 @@ usage: cargo xtask COMMAND
   wheel      lint, types, tests, notebook and API pages of the Python package, in a wheel that it builds; and its sdist
   wheel-size whether the release wheels in target/wheels are under 12 MB; `wheel` asks that too where one is there
   browser    makes a suite and clicks through its report in headless Chromium
-  fuzz       20 s of fuzzing for each reader of untrusted files
+  fuzz       12 s of fuzzing for each reader of untrusted files
   fuzz-keep  keeps what fuzzing found, as few inputs as reach the same code
   licences   writes python/LICENSES.txt: what stands in a wheel, and its licences
 What was skipped is named at the end. With CI set in the environment a step that lacks something fails.";
