@@ -140,6 +140,13 @@ def touched(event: dict, actors: list[dict], obstacles: list[dict]) -> str:
     return f"{event['time_s']:.2f} s: {kind['event']}"
 
 
+def swings(states: list[dict[str, float]], until: int) -> str:
+    """How far an arm has turned from where it was at first: when it begins to, and at the contact."""
+    turned = [degrees(state["heading"] - states[0]["heading"]) for state in states[: until + 1]]
+    begins = next((step for step, by in enumerate(turned) if abs(by) > 1), None)
+    return "does not turn" if begins is None else f"begins to turn at {begins / 10:.1f} s, turned by {turned[-1]:+d} deg at the contact"
+
+
 def shown(recrash: str, scene: Path, folder: Path) -> str:
     """What the rollout with the recorded driver shows, second by second."""
     target = folder / "rollout.json"
@@ -167,6 +174,9 @@ def shown(recrash: str, scene: Path, folder: Path) -> str:
         opened = degrees(part["states"][step]["heading"] - owner["states"][step]["heading"])
         shut = degrees(part["states"][0]["heading"] - owner["states"][0]["heading"])
         lines.append(f"Door of {owner['id']}: turned by {abs(degrees(math.radians(opened - shut)))} deg from shut at the contact")
+    for arm in (a for a in actors if a["role"] == "part" and a["kind"] == actors[a["part_of"]]["kind"] and a["length_m"] >= 1.5):
+        if arm["kind"] == "fixed_object":
+            lines.append(f"Arm of {actors[arm['part_of']]['id']}: {swings(arm['states'], min(int(contact * 10), len(ego) - 1))}")
     start = ego[0]
     steps = list(range(0, min(len(ego), int(contact * 10) + 11), 5))
     for step in steps:

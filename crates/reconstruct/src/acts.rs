@@ -111,14 +111,11 @@ pub(crate) fn passes_partner(sv: &Party, partner: &Party, others: &[OtherParty])
         && !others.iter().any(|other| name(&other.kind).as_ref() == Some(&partner))
 }
 
-/// Whether somebody is told to have entered a junction, and not a road or a lane.
+/// Whether somebody is told to have entered a junction, and not a road or a lane, nor to have begun to.
 fn is_of_junction(fact: &ActFact) -> bool {
-    matches!(&fact.source, Source::Words { text, .. } if text.to_lowercase().contains("intersection"))
-}
-
-/// What is asked of somebody where a junction is drawn, or none is.
-pub(crate) fn asked(told: &[Doing], junction: bool) -> Vec<Doing> {
-    told.iter().filter(|doing| junction || !doing.is_entry()).copied().collect()
+    let Source::Words { text, .. } = &fact.source else { return false };
+    let text = text.to_lowercase();
+    text.contains("intersection") && !["begin", "began", "begun"].iter().any(|begun| text.starts_with(begun))
 }
 
 /// Who passes last passes on the side on which the ego is touched: what is told of the other side was said of something else.

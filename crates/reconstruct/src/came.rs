@@ -8,19 +8,17 @@ use crate::kerb;
 use crate::lanes;
 use crate::lateral;
 use crate::others::Role;
-use crate::pace::{
-    Pace, ROLLING_MPS, STANDING, STOOD_S, STOPPING_MPS2, ego_paces, first_time, next, partner_paces, time_before, when,
-};
+use crate::pace::{Pace, ego_paces, first_time, partner_paces, time_before, when};
 use crate::phases;
-use crate::side::{Side, Turning, size_of as size_of_kind};
+use crate::side::{Side, Turning};
 use crate::sweep;
 use crate::things;
+use crate::thrown;
 use crate::told::{Aside, Told};
 use crate::touch::{Staging, size_of};
 use crate::trailer::Rig;
-use recrash_model::account::{Account, ContactState, Kind, Origin, StandReason, told as told_of};
+use recrash_model::account::{Account, ContactState, Origin, StandReason, told as told_of};
 use recrash_model::geometry::{Pose, Vec2};
-use recrash_model::kinds::PartnerKind;
 use recrash_model::math;
 use recrash_model::rollout::{ActorState, STEP_S};
 use recrash_model::scenario::{
@@ -39,31 +37,11 @@ const ROLLS_S: f64 = 1.0;
 /// A system under test wants no less than this. [m/s]
 const LEAST_WANTED_MPS: f64 = 2.0;
 
-/// Who throws the partner at the ego runs into it at this speed over its own, this long before the contact, and this far from where
-/// that is. [m/s, s, m]
-const PUSH_MPS: f64 = 10.0;
-const THROW_S: f64 = 0.25;
-const THROW_M: f64 = 1.0;
-
-/// With less of that the partner does not come to the ego; and a usual speed on a street. [m/s]
-const LEAST_THROW_MPS: f64 = 7.0;
-const STREET_MPS: f64 = 11.2;
-
-/// Who is pushed while it rolls towards an ego that stands does so at this speed. [m/s]
-const PUSHED_ROLLING_MPS: f64 = 2.0;
-
-/// The partner grazes who stands so long before the contact, with so much of its width. [s, m]
-const GRAZES_S: f64 = 0.25;
-const GRAZES_M: f64 = 0.05;
-
-/// Who touches the partner on its way is faster than it by so much. [m/s]
-const NUDGE_MPS: f64 = 2.0;
-
 /// The simulation goes on for so long after the contact. [s]
 const GOES_ON_S: f64 = 5.0;
 
 /// A course goes on behind the place of the contact, so far that nobody slows for its end before it. [m]
-fn beyond_m(speed_mps: f64) -> f64 {
+pub(crate) fn beyond_m(speed_mps: f64) -> f64 {
     20.0 + 5.0 * speed_mps
 }
 
@@ -402,7 +380,7 @@ fn partner(told: &Told, staging: &Staging) -> (Vec<Actor>, Vec<ObjectSpec>) {
         return (Vec::new(), vec![ObjectSpec { kind: things::obstacle_kind(thing, told), at: at(staging.cp), size }]);
     }
     if told.is_thrown() {
-        return (thrown(told, staging), Vec::new());
+        return (thrown::thrown(told, staging), Vec::new());
     }
     let (lead, pace) = partner_paces(told, staging);
     let arm_m = recrash_roads::arm_m(cp.kind, length_m);
@@ -429,63 +407,17 @@ fn partner(told: &Told, staging: &Staging) -> (Vec<Actor>, Vec<ObjectSpec>) {
     if stands {
         return (actors, Vec::new());
     }
-    let toucher = || if told.pusher_stands { grazed(told, staging) } else { nudger(told, staging, own) };
+    let toucher =
+        || if told.pusher_stands { thrown::grazed(told, staging) } else { thrown::nudger(told, staging, own) };
     actors.extend((told.pushed && told.thing.is_none()).then(toucher));
     (actors, Vec::new())
 }
 
 /// The partner's last way: its legs, where it begins, and how far it is.
-struct OwnWay {
-    course: Vec<Leg>,
-    begin: Pose,
-    driven_m: f64,
-}
-
-/// Who touched the partner on its way: it comes up from behind and runs into it, right before the contact. What is told of that
-/// first contact beside that there was one is not shown.
-fn nudger(told: &Told, staging: &Staging, own: OwnWay) -> Actor {
-    let (cp, gear) = (&told.cp, if told.cp.state == ContactState::Reversing { -1.0 } else { 1.0 });
-    let way = Vec2::from_heading(staging.cp.heading) * gear;
-    let (kind, size, length_m) = pusher(told);
-    let speed_mps = cp.speed_mps + NUDGE_MPS;
-    let touches = staging.cp.position - way * (cp.speed_mps * THROW_S + 0.5 * (size_of(cp).0 + length_m));
-    let start = touches - way * (speed_mps * (told.contact_s - THROW_S));
-    let degrees = staging.cp.heading.to_degrees() + if gear < 0.0 { 180.0 } else { 0.0 };
-    let place = |point: Vec2| Place::at(point.x, point.y, degrees);
-    // By the partner's way, where that came askew to its road there.
-    let behind_m = (staging.cp.position - start).dot(way) - own.driven_m;
-    let askew = math::wrap_angle(staging.cp.heading - own.begin.heading).abs() > ASKEW_RAD;
-    let (from, course) = if askew && gear > 0.0 && behind_m > 0.0 {
-        let Pose { position, heading } = own.begin;
-        let from = position - Vec2::from_heading(heading) * behind_m;
-        (Place::at(from.x, from.y, heading.to_degrees()), own.course)
-    } else {
-        let to = place(touches + way * beyond_m(speed_mps));
-        (place(start), vec![Leg::Curve { to, reverse: false }])
-    };
-    let plan = ActorPlan { speed_mps, course, ..ActorPlan::standing(from) };
-    Actor { id: "pusher".to_owned(), kind, size, mass_kg: None, parts: Vec::new(), plan }
-}
-
-/// Who stands at the kerb, and whom the partner grazes on its way, on the side away from the ego.
-fn grazed(told: &Told, staging: &Staging) -> Actor {
-    let (kind, size, length_m) = pusher(told);
-    let width_m = size.map_or(VehicleSpec::of(kind).width_m, |size| size.width_m);
-    let (partner_m, wide_m) = size_of(&told.cp);
-    let along = Vec2::from_heading(staging.cp.heading);
-    let to_ego = along.cross(staging.sv.position - staging.cp.position).signum();
-    let ahead_m = 0.5 * (partner_m + length_m) - told.cp.speed_mps * GRAZES_S;
-    let beside_m = 0.5 * (width_m + wide_m) - GRAZES_M;
-    let point = staging.cp.position + along * ahead_m - along.left() * (to_ego * beside_m);
-    let plan = ActorPlan::standing(Place::at(point.x, point.y, staging.cp.heading.to_degrees()));
-    Actor { id: "pusher".to_owned(), kind, size, mass_kg: None, parts: Vec::new(), plan }
-}
-
-/// Kind, size and length of who touches the partner: as told, else of a car.
-fn pusher(told: &Told) -> (PartnerKind, Option<Size>, f64) {
-    let kind = told.pusher.and_then(Kind::partner_kind).unwrap_or(PartnerKind::PassengerCar);
-    let size = told.pusher.and_then(size_of_kind);
-    (kind, size, size.map_or(VehicleSpec::of(kind).length_m, |size| size.length_m))
+pub(crate) struct OwnWay {
+    pub(crate) course: Vec<Leg>,
+    pub(crate) begin: Pose,
+    pub(crate) driven_m: f64,
 }
 
 /// The line by which the partner comes to the contact, as long as its pace needs. Of who turns as it touches a bend is the last of it.
@@ -506,10 +438,10 @@ fn course_to(told: &Told, staging: &Staging, pace: Pace, at: impl Fn(Pose) -> Pl
 }
 
 /// Before its last bend somebody has come so far at least. [m]
-const LEAST_BEFORE_M: f64 = 1.0;
+pub(crate) const LEAST_BEFORE_M: f64 = 1.0;
 
 /// The same to where it touches, or begins its last bend.
-fn line_to(told: &Told, staging: &Staging, pace: Pace, at: impl Fn(Pose) -> Place) -> (ActorPlan, Pose) {
+pub(crate) fn line_to(told: &Told, staging: &Staging, pace: Pace, at: impl Fn(Pose) -> Place) -> (ActorPlan, Pose) {
     let cp = &told.cp;
     let ground = &staging.ground;
     if let Some(begin_m) = staging.cp_follows_m.map(|at_m| at_m - pace.driven_m)
@@ -663,111 +595,4 @@ fn start(told: &Told, staging: &Staging, back_m: f64, aside: bool, motion: impl 
             - way.left() * (gain * turn.signum());
     }
     Pose { position, heading: came }
-}
-
-/// The pace of a partner that drives behind an ego which stood on its way: it does what that does.
-fn as_the_ego(told: &Told, staging: &Staging) -> Option<Pace> {
-    let (lead, pace) = ego_paces(told, &staging.ground, staging.sv_s_m);
-    let stood = lead.is_some() || pace.speed_mps == 0.0;
-    match lead {
-        Some(lead) if lead.reverses() => None,
-        Some(lead) => Some(lead.then(pace)),
-        None => stood.then_some(pace),
-    }
-}
-
-/// How much faster than the partner is who throws it: of two that are alike half of it is left, where told; and no faster than is usual
-/// on a street, where it can be. [m/s]
-fn push_mps(told: &Told, partner_mps: f64) -> f64 {
-    match told.cp.impact_mps {
-        Some(mps) => (2.0 * (mps - partner_mps)).clamp(LEAST_THROW_MPS, PUSH_MPS),
-        None => (STREET_MPS - partner_mps).clamp(LEAST_THROW_MPS, PUSH_MPS),
-    }
-}
-
-/// How the partner comes to where another runs into it: that comes with this speed, and drives so much faster than it from then on. [m/s]
-struct Thrown {
-    pace: Pace,
-    pusher_mps: f64,
-    rolls_mps: f64,
-}
-
-/// It stands behind the ego, or comes along behind it, and who runs into it does so at [`PUSH_MPS`] over its speed.
-fn thrown_paces(told: &Told, staging: &Staging) -> Thrown {
-    let cp = &told.cp;
-    let rolls_mps = if told.pushed_rolling { PUSHED_ROLLING_MPS } else { 0.0 };
-    let braking_s = (ROLLING_MPS - rolls_mps) / STOPPING_MPS2;
-    let from_s = ((told.contact_s - STOOD_S - braking_s) * 10.0).floor() / 10.0;
-    let driven_m = ROLLING_MPS * from_s + 0.5 * (ROLLING_MPS + rolls_mps) * braking_s;
-    let moves_up = phases::lead(&cp.phases, told.contact_s - STOOD_S, ROLLING_MPS, phases::MOVES_UP_M, 0.0);
-    let ego_mps = if told.sv.state.stands() { 0.0 } else { told.sv.speed_mps };
-    let push_mps = push_mps(told, ego_mps + rolls_mps);
-    let rolling = |acts: Vec<Act>, driven_m: f64| Pace { speed_mps: ROLLING_MPS, acts, driven_m };
-    let (pace, pusher_mps) = if told.sv.state == ContactState::Parked {
-        (STANDING, push_mps)
-    } else if let Some(pace) = as_the_ego(told, staging).filter(|_| ego_mps > 0.0) {
-        (pace, ego_mps + push_mps)
-    } else if ego_mps > 0.0 {
-        (Pace { speed_mps: ego_mps, acts: Vec::new(), driven_m: ego_mps * told.contact_s }, ego_mps + push_mps)
-    } else if rolls_mps > 0.0 {
-        // It slows behind the ego, and rolls yet when it is pushed.
-        let slow = vec![when(from_s, Deed::Speed { to_mps: rolls_mps, rate_mps2: STOPPING_MPS2 })];
-        let rolled_m = rolls_mps * (told.contact_s - from_s - braking_s);
-        (rolling(slow, driven_m + rolled_m), rolls_mps + push_mps)
-    } else if let Some(lead) = moves_up.filter(|lead| !lead.reverses()) {
-        // It stood behind the ego, moved up, and stands again.
-        let (speed_mps, driven_m) = (lead.speed_mps, lead.driven_m());
-        let acts = lead.acts.into_iter().chain([next(Deed::Hold { for_s: None })]).collect();
-        (Pace { speed_mps, acts, driven_m }, push_mps)
-    } else {
-        let stop = Deed::Stop { rate_mps2: STOPPING_MPS2, at_m: None };
-        (rolling(vec![when(from_s, stop), next(Deed::Hold { for_s: None })], driven_m), push_mps)
-    };
-    Thrown { pace, pusher_mps, rolls_mps: ego_mps + rolls_mps }
-}
-
-/// Who touches askew to its road was there only at the end: it, and who runs into it, came by its way. [rad]
-const ASKEW_RAD: f64 = 0.05;
-
-/// The partner, and another who runs into it from behind: a car.
-fn thrown(told: &Told, staging: &Staging) -> Vec<Actor> {
-    let cp = &told.cp;
-    let Thrown { pace, pusher_mps, rolls_mps } = thrown_paces(told, staging);
-    let way = Vec2::from_heading(staging.cp.heading);
-    let at = |pose: Pose| Place::at(pose.position.x, pose.position.y, pose.heading.to_degrees());
-    let pushed = Pose { position: staging.cp.position - way * THROW_M, ..staging.cp };
-    let beyond = |speed_mps: f64| Leg::Curve {
-        to: at(Pose { position: staging.cp.position + way * beyond_m(speed_mps), ..staging.cp }),
-        reverse: false,
-    };
-    let (kind, size, pusher_m) = pusher(told);
-    let until_m = 0.5 * (size_of(cp).0 + pusher_m) + pusher_mps * (told.contact_s - THROW_S);
-    let behind_m = until_m + rolls_mps * THROW_S - pace.driven_m;
-    let askew = math::wrap_angle(staging.cp.heading - staging.cp_came).abs() > ASKEW_RAD;
-    let (begin, course) = match askew && pace.driven_m > LEAST_BEFORE_M {
-        true => {
-            let cp_follows_m = staging.cp_follows_m.map(|at_m| at_m - THROW_M);
-            let before = Staging { cp: pushed, cp_follows_m, bend: None, ..staging.clone() };
-            let (plan, begin) = line_to(told, &before, pace.clone(), at);
-            (begin, plan.course)
-        }
-        false => (Pose { position: pushed.position - way * pace.driven_m, ..staging.cp }, Vec::new()),
-    };
-    let on = |speed_mps: f64, from: Pose, acts: Vec<Act>| {
-        let mut course = course.clone();
-        if !matches!(course.last(), Some(Leg::Lanes { .. })) {
-            course.pop();
-            course.push(beyond(speed_mps));
-        }
-        ActorPlan { speed_mps, course, acts, ..ActorPlan::standing(at(from)) }
-    };
-    let from = Pose { position: begin.position - Vec2::from_heading(begin.heading) * behind_m, ..begin };
-    let actor =
-        |id: &str, kind, size, plan| Actor { id: id.to_owned(), kind, size, mass_kg: None, parts: Vec::new(), plan };
-    let partner = match pace.driven_m {
-        0.0 => ActorPlan::standing(at(begin)),
-        _ => on(pace.speed_mps, begin, pace.acts),
-    };
-    let pusher = on(pusher_mps, from, Vec::new());
-    vec![actor("cp", cp.kind, cp.size, partner), actor("pusher", kind, size, pusher)]
 }

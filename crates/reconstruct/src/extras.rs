@@ -280,13 +280,14 @@ impl Scene<'_> {
             return Some(ActorPlan { course, acts, ..ActorPlan::standing(at(0.0)) });
         }
         // Behind whom the ego moves up, that one has moved up before.
-        let Some((up_s, up_m)) = self.moved_up().filter(|_| !extra.parked && extra.role != Role::Thing) else {
-            return Some(ActorPlan::standing(at(0.0)));
-        };
+        let again = self.moves_up_yet(stand).filter(|_| extra.again);
+        let before = || self.moved_up().filter(|_| !extra.parked && extra.role != Role::Thing);
+        let Some((up_s, up_m)) = again.or_else(before) else { return Some(ActorPlan::standing(at(0.0))) };
         let speed_mps = 0.9 * (GOES_MPS2 * up_m).sqrt();
         let stop = Deed::Stop { rate_mps2: GOES_MPS2, at_m: Some(up_m) };
         let acts = vec![when(up_s, Deed::Speed { to_mps: speed_mps, rate_mps2: GOES_MPS2 }), next(stop)];
-        Some(ActorPlan { course, acts, ..ActorPlan::standing(at(-up_m)) })
+        let begins_m = if again.is_some() { 0.0 } else { -up_m };
+        Some(ActorPlan { course, acts, ..ActorPlan::standing(at(begins_m)) })
     }
 
     /// From the ego to the front of a partner that stands in the queue ahead of it, or beside it at the kerb. [m]
@@ -315,6 +316,14 @@ impl Scene<'_> {
         let up_m = self.at(*last).0 - self.at(*before).0;
         let up_s = (0.1 * *before as f64 - SETS_OFF_BEFORE_S).max(0.1);
         (to + 1 >= self.until && (1.0..20.0).contains(&up_m)).then_some(((up_s * 10.0).round() / 10.0, up_m))
+    }
+
+    /// When, and how far, who stands ahead moves up before an ego that sets off and is about to stand again. [s, m]
+    fn moves_up_yet(&self, stand: Option<(usize, usize)>) -> Option<(f64, f64)> {
+        let (_, to) = stand.filter(|(_, to)| to + 1 < self.until)?;
+        let stops_m = 0.5 * self.mps(self.until) * self.mps(self.until) / BRAKES_MPS2;
+        let up_s = (0.1 * to as f64 - SETS_OFF_BEFORE_S).max(0.1);
+        Some(((up_s * 10.0).round() / 10.0, self.at(self.until).0 - self.at(to).0 + stops_m))
     }
 
     /// It drives as the ego does, ahead of it and a little earlier.

@@ -17,6 +17,7 @@ use crate::seen::Seen;
 use crate::side::Slant;
 use crate::strips;
 use crate::things;
+use crate::thrown;
 use crate::told::Told;
 use crate::touch::{side_of, zones_off};
 use crate::trailer::{self, Rig};
@@ -208,7 +209,12 @@ pub(crate) fn facts(told: &Told, scenario: &Scenario, rollout: &Rollout) -> Vec<
             format!("touched by another before: {}", track.kind.label().to_lowercase())
         });
         let result = match before {
-            Some(track) if kind.is_none_or(|kind| kind == track.kind) => CheckResult::Shown,
+            Some(track) if kind.is_none_or(|kind| kind == track.kind) => match touch.track {
+                Some(met) if !thrown::comes_as_told(told, ego_track, [met, track], (touch.time_s * 10.0) as usize) => {
+                    CheckResult::CannotBeShown
+                }
+                _ => CheckResult::Shown,
+            },
             // Who pushed a thing is not drawn.
             None if told.is_sliding() => CheckResult::CannotBeShown,
             _ => CheckResult::NotShown,
@@ -323,11 +329,10 @@ fn acts_of_both(
 ) {
     let enters = told.sv.enters() || told.cp.enters();
     let junction = enters.then(|| Junction::of(scenario)).flatten();
-    let asked = [&told.sv, &told.cp].map(|side| acts::asked(&side.acts, junction.is_some()));
-    let did = |told, track: Option<_>| {
-        track.map(|track| acts::Did { told, track, entered: junction.as_ref().and_then(|inner| inner.entered(track)) })
-    };
-    let [sv, cp] = [did(asked[0].as_slice(), ego), did(asked[1].as_slice(), partner)];
+    // Where no junction is drawn nobody has entered one.
+    let entered = |track| junction.as_ref().and_then(|inner| inner.entered(track));
+    let did = |told, track: Option<_>| track.map(|track| acts::Did { told, track, entered: entered(track) });
+    let [sv, cp] = [did(told.sv.acts.as_slice(), ego), did(told.cp.acts.as_slice(), partner)];
     for (kind, one, other) in [(CheckKind::SvActs, &sv, &cp), (CheckKind::CpActs, &cp, &sv)] {
         if let Some(one) = one.as_ref().filter(|one| !one.told.is_empty()) {
             let (result, observed) = acts::check(one, other.as_ref(), time_s);
@@ -395,6 +400,7 @@ fn lane(
     let shown = match word {
         // Beside the driving lanes.
         _ if matches!(road.part, RoadPart::Beside(_)) => false,
+        LaneWord::Left if ego.id == track.id && told.layout.turn_lane => number == 1,
         LaneWord::Left => number == 0,
         LaneWord::Right => number == last,
         LaneWord::LeftTurn => number < turn_lanes,

@@ -180,7 +180,8 @@ pub(crate) fn ground_for(told: &Told) -> Ground {
     // Who gives way to crossing traffic, or keeps a junction clear, is at one.
     let at_one = [Role::Crosser, Role::Blocker, Role::Beyond].into_iter().any(|role| has(told, role));
     let gives_way = told.place != PlaceKind::Highway && (at_one || told.crossed_near);
-    if (crossing || controlled || gives_way) && !lot || told.place == PlaceKind::Intersection {
+    let entered = told.place != PlaceKind::Highway && (told.enters() || told.is_followed_in());
+    if (crossing || controlled || gives_way || entered) && !lot || told.place == PlaceKind::Intersection {
         let ground = junction(told, crossing);
         let behind_m: &[f64] = match (told.edge, told.lies) {
             (Some(_), _) => &BEHIND_ENTRY_M,
@@ -224,6 +225,12 @@ pub(crate) fn ground_for(told: &Told) -> Ground {
 }
 
 impl Told {
+    /// Whether a partner that goes the ego's way is told to have come into the junction, and the ego drives: both are in it.
+    fn is_followed_in(&self) -> bool {
+        let along = matches!(self.origin, Origin::Behind | Origin::Ahead | Origin::Beside { .. });
+        !self.plainly && along && self.cp.enters() && self.sv.state == ContactState::Moving
+    }
+
     /// Which lane of its road one of the two is told to be in, counted from a side.
     pub(crate) fn counted(&self, of_ego: bool) -> Option<Counted> {
         if of_ego { self.layout.sv.counted } else { self.layout.cp.counted }
@@ -338,7 +345,8 @@ fn lanes_for(told: &Told, usual: usize) -> usize {
         Some(LaneWord::Left | LaneWord::Right | LaneWord::LeftTurn | LaneWord::RightTurn) => 2,
         _ => 1,
     });
-    let lanes = told.lanes.map_or(usual, usize::from).max(needed.max().unwrap_or(1)) + usize::from(told.more_lanes);
+    let more = usize::from(told.more_lanes) + usize::from(told.layout.turn_lane);
+    let lanes = told.lanes.map_or(usual, usize::from).max(needed.max().unwrap_or(1)) + more;
     lanes.clamp(1, MOST_LANES)
 }
 
@@ -350,6 +358,7 @@ impl Told {
     pub(crate) fn lane_number(&self, of_ego: bool, lanes: usize) -> Option<usize> {
         match if of_ego { self.sv.lane? } else { self.cp.lane? } {
             LaneWord::Center if let Some(counted) = self.counted(of_ego) => counted.place(lanes),
+            LaneWord::Left if of_ego && self.layout.turn_lane => Some(1),
             LaneWord::Left | LaneWord::LeftTurn => Some(0),
             LaneWord::Right | LaneWord::RightTurn => Some(lanes - 1),
             LaneWord::Center => Some(lanes / 2),
@@ -566,7 +575,7 @@ fn junction(told: &Told, crossing: bool) -> Ground {
             None => 5.0,
         };
         let before_m = if at_kerb { KERB_BEFORE_M } else { before_m };
-        match told.enters() && !at_kerb && told.edge.is_none() {
+        match (told.enters() || told.is_followed_in()) && !at_kerb && told.edge.is_none() {
             true => inside(&INSIDE_M),
             // From its line.
             false if told.sets_off_first() && before_m < USUAL_M => vec![APPROACH_M - over_line_m(told)],

@@ -1,7 +1,9 @@
 //! What the words tell of the road, and of the places on it, beside kinds of places and of lanes: which lane, counted from a side; who
 //! stands at the kerb; which door.
 
-use recrash_model::account::{Account, Act, ActFact, Fact, LeftRight, Party, RoadFeature, Source};
+use recrash_model::account::{
+    Account, Act, ActFact, Fact, LaneWord, LeftRight, Origin, Party, RoadFeature, Source, told,
+};
 
 /// A lane that is counted from a side of the road: "the third lane from the right".
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -63,6 +65,8 @@ pub(crate) struct Layout {
     pub(crate) one_way: bool,
     /// A double yellow line divides it.
     pub(crate) centre_line: bool,
+    /// A lane for left turns lies beside the ego's, which is told to be the left one of those that go on.
+    pub(crate) turn_lane: bool,
     /// The ego goes to turn left, and has not begun to.
     pub(crate) left_to_come: bool,
     /// The door that took part is told to be a rear one, or a front one.
@@ -78,10 +82,23 @@ impl Layout {
             narrow: has(RoadFeature::NarrowStreet),
             one_way: has(RoadFeature::OneWay),
             centre_line: has(RoadFeature::DoubleYellowLine),
+            turn_lane: has(RoadFeature::TurnLane) && goes_to_turn_lane(account, partner),
             left_to_come: goes_to_turn_left(&account.sv),
             rear_door: rear_door(account, partner),
         }
     }
+}
+
+/// Whether the partner is told in a lane for left turns beside an ego in the left lane, or goes out to its left there, past the ego.
+fn goes_to_turn_lane(account: &Account, partner: &Party) -> bool {
+    let lane = |party: &Party| told(&party.lane);
+    let out = |fact: &ActFact| matches!(fact.act, Act::LaneChange | Act::Pass) && fact.side == Some(LeftRight::Left);
+    let goes = match (lane(partner), told(&account.came_from)) {
+        (Some(LaneWord::LeftTurn), Some(Origin::Beside { side })) => side == LeftRight::Left,
+        (None, Some(Origin::Behind)) => partner.acts.iter().any(|fact| out(fact) && !fact.after_contact),
+        _ => false,
+    };
+    lane(&account.sv) == Some(LaneWord::Left) && goes
 }
 
 fn standing(account: &Account, party: &Party) -> Standing {

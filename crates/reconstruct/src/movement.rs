@@ -69,6 +69,13 @@ impl Way<'_> {
         Vec2::from_heading(first.heading).cross(last.position() - first.position())
     }
 
+    /// By how much it has come nearer to the other's line, along the road. [m]
+    fn comes_nearer_m(&self) -> f64 {
+        let road = Vec2::from_heading(self.road_rad);
+        let off_m = |state: &ActorState| road.cross(state.position() - self.met.position()).abs();
+        off_m(&self.until()[0]) - off_m(&self.until()[self.until().len() - 1])
+    }
+
     /// The angle between it and the road that the ego came along, at the contact. [deg]
     fn slant_deg(&self) -> f64 {
         let last = &self.until()[self.until().len() - 1];
@@ -144,6 +151,10 @@ pub(crate) fn check(side: &Side, way: &Way<'_>) -> Option<(String, CheckResult, 
                     format!("{words}, {}", turned_words(turned))
                 },
             )
+        }
+        Movement::ChangingLanes | Movement::Merging if side.merges_in => {
+            let nearer_m = way.comes_nearer_m();
+            (nearer_m >= CHANGED_M, format!("{nearer_m:.1} m nearer to the other's line"))
         }
         Movement::ChangingLanes | Movement::Merging | Movement::CrossingIntoOpposingLane => sideways(CHANGED_M),
         Movement::LaneDeparture => sideways(LEFT_LINE_M),

@@ -126,8 +126,21 @@ pub(crate) struct Near {
     pub(crate) does: Does,
     /// Another deed on the same way.
     pub(crate) also: Option<Does>,
+    /// How it comes to that.
+    pub(crate) first: First,
     /// How many such are there before it.
     pub(crate) number: usize,
+}
+
+/// What somebody near did first, or last.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(crate) enum First {
+    #[default]
+    Untold,
+    /// Who stands came along before.
+    Came,
+    /// Who was in the ego's way has left it.
+    Left,
 }
 
 impl Near {
@@ -140,7 +153,7 @@ impl Near {
             let place = other.place.as_ref().map(|fact| fact.value);
             let rolls = other.acts.iter().any(|fact| !fact.after_contact && moves(fact.act));
             let does = if rolls { Does::Crosses } else { Does::Stands };
-            return Some(Self { place, across: false, does, also: None, number });
+            return Some(Self { place, across: false, does, also: None, first: First::Untold, number });
         }
         let said = |of: &[&str]| of.iter().any(|word| words.contains(word));
         let place = other.place.as_ref().map(|fact| fact.value).or_else(|| {
@@ -176,7 +189,16 @@ impl Near {
         if !does.fits(place) || !also.is_none_or(|also| also.fits(place)) {
             return None;
         }
-        Some(Self { place, across, does, also, number })
+        let drives = |fact: &&ActFact| matches!(fact.act, Act::Follow | Act::SetOff | Act::Enter | Act::Turn);
+        let in_view = on_wheels && matches!(place, Some(Origin::Ahead | Origin::Opposite));
+        let stood = before.first().is_some_and(|fact| matches!(fact.act, Act::Hold | Act::Stop | Act::Park));
+        let left = other.acts.iter().any(|fact| fact.act == Act::Leave && !fact.after_contact && !fact.begun);
+        let first = match does {
+            Does::Stands if in_view && !stood && before.iter().copied().any(|fact| drives(&fact)) => First::Came,
+            _ if left && !on_wheels => First::Left,
+            _ => First::Untold,
+        };
+        Some(Self { place, across, does, also, first, number })
     }
 
     /// The same of one that drives ahead of the ego.
@@ -260,7 +282,12 @@ impl Near {
             };
             near(step) && placed
         };
-        let stays_ahead = self.place != Some(Origin::Ahead) || seen(until).0 > 0.0;
+        let stays_ahead = self.place != Some(Origin::Ahead) || self.first == First::Left || seen(until).0 > 0.0;
+        let first = match self.first {
+            First::Untold => true,
+            First::Came => state(0).position().distance(state(until).position()) > DROVE_M,
+            First::Left => seen(until).1.abs() > 0.5 * LANE_M || seen(until).0 < -half_m,
+        };
         // Who waits opposite, or slows there, has not long gone by when the two touch.
         let waits = self.place == Some(Origin::Opposite) && matches!(self.does, Does::Slows | Does::Stands);
         let waits_yet = !waits || seen(until).0 > -half_m - GONE_BY_M;
@@ -308,7 +335,7 @@ impl Near {
             }
         };
         let does = done(self.does) && self.also.is_none_or(done);
-        stays_ahead && waits_yet && does && (acts_from(ego, until)..=until).any(there)
+        stays_ahead && first && waits_yet && does && (acts_from(ego, until)..=until).any(there)
     }
 }
 

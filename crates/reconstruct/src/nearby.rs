@@ -379,14 +379,14 @@ impl<'a> Scene<'a> {
                 if near.does == Does::Slows {
                     list.extend(self.waits_opposite(half_m).iter().map(|way| self.coming_to(way)));
                 }
-                list.extend(self.waits_opposite(half_m));
+                list.extend(self.comes_or_stands(near, self.waits_opposite(half_m)));
             }
             Some(Origin::Ahead) => {
                 list.extend(self.loses(half_m));
                 if !stands {
                     list.extend(self.leads(half_m));
                 }
-                list.extend(self.stands_ahead(half_m, 0.0));
+                list.extend(self.comes_or_stands(near, self.stands_ahead(half_m, 0.0)));
             }
             Some(Origin::Behind) => list.extend(self.follows(half_m)),
             Some(Origin::Beside { side }) => {
@@ -490,7 +490,7 @@ impl<'a> Scene<'a> {
     }
 
     /// Comes along to where somebody stands.
-    fn coming_to(&self, way: &Way) -> Way {
+    pub(super) fn coming_to(&self, way: &Way) -> Way {
         let [_, speed_mps] = self.speeds();
         let way_m = COMES_SHARE * speed_mps * self.contact_s;
         let from = way.from.position - Vec2::from_heading(way.from.heading) * way_m;

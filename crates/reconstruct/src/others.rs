@@ -1,174 +1,18 @@
 //! Others than the two: who is told of besides them, and what they are to the ego.
 
 use crate::ground::LANE_M;
-use crate::near::{Does, Near};
+use crate::near::Near;
 use crate::phases::Phase;
+pub(crate) use crate::role::{Extra, Role};
 use crate::side::Turning;
 use crate::told::{Aside, Told};
 use crate::touch::side_of;
 use recrash_model::account::{
-    Account, Act, ActFact, ContactState, Kind, KindGroup, LeftRight, Origin, Other, PlaceKind, SignalState, Source,
-    StandReason,
+    Account, Act, ActFact, ContactState, Fact, Kind, KindGroup, LeftRight, Origin, Other, PlaceKind, SignalState,
+    Source, StandReason,
 };
 use recrash_model::rollout::{EventKind, Rollout};
 use recrash_model::template::Movement;
-
-/// What somebody else is to the ego.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Role {
-    /// Stands ahead of it in its lane.
-    Lead,
-    /// Drives ahead of it, and slows.
-    Slower,
-    /// Somebody on foot or on a bicycle who crosses its way.
-    Walker,
-    /// An animal that does.
-    Animal,
-    /// A vehicle on the crossing road.
-    Crosser,
-    /// A vehicle that comes towards it, and passes it.
-    Oncoming,
-    /// Vehicles parked at the kerb.
-    Kerb,
-    /// Stands in the lane that the ego leaves, or beside its way: it goes round it.
-    Obstacle,
-    /// Stands in the lane that the partner leaves: it goes round it.
-    Passed,
-    /// Changes from beside the ego into its lane, ahead of it.
-    Merger,
-    /// Stands across the junction, in the ego's way.
-    Blocker,
-    /// Stands behind the junction, in the ego's lane: there is no room for it.
-    Beyond,
-    /// Stands in the next lane, where the ego goes by or stands.
-    Beside,
-    /// Backs into the ego's lane from the side, ahead of it.
-    Backer,
-    /// Drives in the next lane as the ego does.
-    Abreast,
-    /// A thing that stands or lies in its lane, ahead of it.
-    Thing,
-    /// Has no part in what the ego does.
-    Near,
-}
-
-impl Role {
-    /// The name of its actor.
-    pub(crate) const fn id(self) -> &'static str {
-        match self {
-            Self::Lead => "lead",
-            Self::Slower => "slower",
-            Self::Walker => "walker",
-            Self::Animal => "animal",
-            Self::Crosser => "crosser",
-            Self::Oncoming => "oncoming",
-            Self::Kerb => "kerb",
-            Self::Obstacle => "obstacle",
-            Self::Passed => "passed",
-            Self::Merger => "merger",
-            Self::Blocker => "blocker",
-            Self::Beyond => "beyond",
-            Self::Beside => "beside",
-            Self::Backer => "backer",
-            Self::Abreast => "abreast",
-            Self::Thing => "thing",
-            Self::Near => "near",
-        }
-    }
-}
-
-impl Extra {
-    /// For sentences.
-    pub(crate) fn words(&self) -> &'static str {
-        match self.role {
-            Role::Near => self.near.map_or("", Near::words),
-            Role::Lead if self.goes => "one stands ahead and drives on",
-            Role::Lead => "one stands ahead",
-            Role::Slower => "one ahead slows",
-            Role::Walker if self.stays => "somebody stays close",
-            Role::Walker => "somebody crosses",
-            Role::Animal => "an animal crosses",
-            Role::Crosser => "one comes along the crossing road",
-            Role::Oncoming => "one comes by from ahead",
-            Role::Beside => "one stands in the next lane",
-            Role::Backer => "one backs into its lane ahead",
-            Role::Abreast => "one drives in the next lane",
-            Role::Thing => "a thing is in its lane ahead",
-            Role::Kerb => "parked at the kerb",
-            Role::Obstacle => "one stands that it goes round",
-            Role::Passed => "one stands that the partner goes round",
-            Role::Merger => "one changes into its lane ahead",
-            Role::Blocker => "one stands across the junction",
-            Role::Beyond => "one stands behind the junction",
-        }
-    }
-}
-
-/// Somebody else who has a part in what the ego does.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Extra {
-    pub(crate) role: Role,
-    /// Which of the account's others it is; none where only a reason to stand tells of it. More than one where they are the same.
-    pub(crate) of: Vec<usize>,
-    pub(crate) kind: Kind,
-    /// Who stands ahead drives on before the ego or the partner does.
-    pub(crate) goes: bool,
-    /// Is told to be parked.
-    pub(crate) parked: bool,
-    /// It does so before the ego moves between two stops.
-    pub(crate) first: bool,
-    /// The ego stands or slows for it, or it is not told that somebody else is the reason.
-    pub(crate) awaited: bool,
-    /// The ego has gone round it, and is back in its lane.
-    pub(crate) behind: bool,
-    /// The partner is told to pass between the ego and it.
-    pub(crate) between: bool,
-    /// Who is on foot is told to stay where it is, and not to cross.
-    pub(crate) stays: bool,
-    /// More than one.
-    pub(crate) several: bool,
-    /// On which side of the ego it is, or from which it comes, where told.
-    pub(crate) side: Option<LeftRight>,
-    /// What is told of one who has no part in what the ego does.
-    pub(crate) near: Option<Near>,
-}
-
-impl Extra {
-    /// One of whom only a reason to stand tells.
-    pub(crate) fn of_reason(role: Role) -> Self {
-        Self {
-            role,
-            of: Vec::new(),
-            kind: Kind::Vehicle,
-            goes: false,
-            parked: false,
-            first: false,
-            awaited: true,
-            behind: false,
-            between: false,
-            stays: false,
-            several: false,
-            side: None,
-            near: None,
-        }
-    }
-
-    /// One of whom neither place nor deed is told: that it is somewhere near is assumed, and nothing of it can be looked at.
-    pub(crate) fn is_assumed(&self) -> bool {
-        self.near.is_some_and(|near| near.place.is_none() && !near.across && near.does == Does::Untold)
-    }
-
-    /// Of one whom nobody names, and who is there because the ego stood: that it is assumed.
-    pub(crate) fn assumed(&self) -> Option<String> {
-        let only = self.of.is_empty() && matches!(self.role, Role::Thing | Role::Crosser | Role::Oncoming);
-        only.then(|| format!("what the ego stands for: {}", self.words()))
-    }
-
-    /// The name of its actor.
-    pub(crate) fn id(&self) -> String {
-        self.near.map_or_else(|| self.role.id().to_owned(), Near::id)
-    }
-}
 
 /// Who is named no farther behind the words that the ego slowed or stood is whom it did so for; of who is on foot, and of animals, nor
 /// farther before them. [byte]
@@ -205,6 +49,14 @@ pub(crate) fn reasons(account: &Account, origin: Origin) -> Vec<StandReason> {
     let somebody = account.others.iter().any(|other| story.is_near(other) && !is_parked(other));
     let explained = origin != Origin::Behind
         || [StandReason::Queue, StandReason::RedLight, StandReason::StopSign].into_iter().any(said);
+    // Whom it yields to is the partner, which nobody told to stand ahead.
+    let yields = |fact: &&Fact<StandReason>| fact.value == StandReason::Yield;
+    let yielded = account.sv.reasons.iter().find(yields).and_then(|fact| span(&fact.source));
+    let leads = |fact: &Fact<StandReason>| {
+        let partner = !matches!(origin, Origin::Behind | Origin::Ahead) && span(&fact.source) == yielded;
+        fact.value == StandReason::LeadVehicle && (yielded.is_none() || somebody || !partner)
+    };
+    let leads = account.sv.reasons.iter().any(leads);
     // "A construction worker" is somebody, and a construction truck is whom it stands behind.
     let works = said(StandReason::LeadVehicle) || said(StandReason::Pedestrian) && any(is_on_foot);
     told.filter(|reason| match reason {
@@ -212,6 +64,7 @@ pub(crate) fn reasons(account: &Account, origin: Origin) -> Vec<StandReason> {
         StandReason::Animal => any(|kind| kind.group() == KindGroup::Animal),
         StandReason::Yield => somebody || !explained,
         StandReason::BlockedPath => !works,
+        StandReason::LeadVehicle => leads,
         _ => true,
     })
     .collect()
@@ -288,8 +141,10 @@ pub(crate) fn wanted(told: &Told, account: &Account) -> Vec<Extra> {
         };
         let drives_on = story.drives_on(other).filter(|_| role == Role::Lead);
         let parked = other.acts.iter().any(|fact| text(&fact.source).contains("parked"));
-        let goes = role == Role::Lead && sets_off(told) && !parked && !leaves_lane(told) || drives_on.is_some();
+        let sets_off = sets_off(told) && !parked && !leaves_lane(told) || lets_in_at_green(told, other);
+        let goes = role == Role::Lead && sets_off || drives_on.is_some();
         let first = drives_on == Some(true);
+        let again = role == Role::Lead && story.stands_again(other);
         match list.iter_mut().find(|extra| extra.role == role) {
             Some(known) if kind.partner_kind().is_none_or(|kind| known.kind.partner_kind() == Some(kind)) => {
                 known.of.push(number);
@@ -297,6 +152,7 @@ pub(crate) fn wanted(told: &Told, account: &Account) -> Vec<Extra> {
                 known.parked |= parked;
                 known.several = true;
                 known.first |= first;
+                known.again |= again;
             }
             Some(_) => list.extend(near(&list)),
             None => {
@@ -311,6 +167,7 @@ pub(crate) fn wanted(told: &Told, account: &Account) -> Vec<Extra> {
                     goes,
                     parked,
                     first,
+                    again,
                     awaited,
                     behind,
                     between,
@@ -322,6 +179,15 @@ pub(crate) fn wanted(told: &Told, account: &Account) -> Vec<Extra> {
             }
         }
     }
+    for extra in list.iter_mut().filter(|extra| extra.again) {
+        (extra.goes, extra.first) = (false, false);
+    }
+    for_reasons(&story, told, &mut list);
+    list
+}
+
+/// The same with those of whom only a reason to stand tells.
+fn for_reasons(story: &Story<'_>, told: &Told, list: &mut Vec<Extra>) {
     let blocked = told.reasons.contains(&StandReason::BlockedJunction) && told.sv.state == ContactState::Stopped;
     if blocked && told.thing.is_none() && list.iter().all(|extra| extra.role != Role::Beyond) {
         list.push(Extra::of_reason(Role::Beyond));
@@ -338,18 +204,17 @@ pub(crate) fn wanted(told: &Told, account: &Account) -> Vec<Extra> {
         list.insert(0, Extra { several, ..Extra::of_reason(Role::Lead) });
     }
     let in_way = list.iter().any(|extra| matches!(extra.role, Role::Lead | Role::Obstacle));
-    let thing = thing_in_way(account).filter(|_| !in_way && is_drawn(told, Role::Thing));
+    let thing = thing_in_way(story.account).filter(|_| !in_way && is_drawn(told, Role::Thing));
     if let Some(kind) = thing.filter(|_| told.reasons.contains(&StandReason::BlockedPath)) {
         list.push(Extra { kind, ..Extra::of_reason(Role::Thing) });
     }
     // It gave way, and nobody says to whom.
-    let named = account.others.iter().any(|other| story.is_near(other));
+    let named = story.account.others.iter().any(|other| story.is_near(other));
     let named = named || list.iter().any(|extra| GIVEN_WAY.contains(&extra.role));
     let role = if is_at_junction(told) { Role::Crosser } else { Role::Oncoming };
     if told.reasons.contains(&StandReason::Yield) && !named && is_drawn(told, role) {
         list.push(Extra::of_reason(role));
     }
-    list
 }
 
 /// What to try: all of them, all but one, one of them, and none.
@@ -396,6 +261,8 @@ fn is_drawn(told: &Told, role: Role) -> bool {
         Role::Kerb | Role::Beside | Role::Near => true,
         Role::Obstacle | Role::Oncoming | Role::Merger | Role::Backer | Role::Abreast => drives,
         Role::Passed => told.thing.is_none(),
+        // Who was in the way of an ego that stood, and has left, may have left something there.
+        Role::Walker if told.thing.is_some() => drives && sets_off(told),
         // Ahead of a partner that is ahead itself, and stands or backs there.
         Role::Lead => drives && told.thing.is_none() && (told.origin != Origin::Ahead || waits_ahead(told)),
         Role::Slower | Role::Thing => drives && told.thing.is_none() && told.origin != Origin::Ahead,
@@ -419,6 +286,15 @@ pub(crate) fn sets_off(told: &Told) -> bool {
 pub(crate) fn leaves_lane(told: &Told) -> bool {
     let leaves = |aside: Aside| aside.from_t_m == 0.0 && aside.to_t_m.abs() >= LANE_M;
     sets_off(told) && told.sv_aside().is_some_and(leaves)
+}
+
+/// Whether the ego stands on though its light has turned green, and lets in who comes from beside the road: the queue ahead, of which no
+/// deed is told, has driven on.
+fn lets_in_at_green(told: &Told, other: &Other) -> bool {
+    let green = told.sv.control.is_some_and(|said| said.state == Some(SignalState::TurnedGreen));
+    let blocked = told.reasons.iter().any(|why| matches!(why, StandReason::BlockedJunction | StandReason::BlockedPath));
+    let stays = told.sv.state == ContactState::Stopped && green && !blocked;
+    stays && told.comes_from_aside() && before_contact(other).next().is_none()
 }
 
 /// Whether the road that the ego is on crosses another one there.
@@ -505,6 +381,15 @@ impl Story<'_> {
             moves && fact.step > since && !fact.after_contact
         };
         Some(self.account.sv.acts.iter().find(moves).is_some_and(|fact| at < fact.step))
+    }
+
+    /// Whether somebody stands, or comes to a stop, behind that the ego set off, and the ego slows or stops again.
+    fn stands_again(&self, other: &Other) -> bool {
+        let ego = || self.account.sv.acts.iter().filter(|fact| !fact.after_contact);
+        let Some(off) = ego().filter(|fact| fact.act == Act::SetOff).map(|fact| fact.step).max() else { return false };
+        let slows = ego().any(|fact| fact.step > off && matches!(fact.act, Act::Slow | Act::Stop));
+        let last = before_contact(other).max_by_key(|fact| fact.step);
+        slows && last.is_some_and(|fact| fact.step > off && matches!(fact.act, Act::Hold | Act::Stop))
     }
 
     fn role(&self, told: &Told, other: &Other) -> Option<Role> {

@@ -225,7 +225,11 @@ impl<'a> Seen<'a> {
         let stood = Self::mps(track, from) < STANDS_MPS;
         let goes = (from..=self.until).find(|step| Self::mps(track, *step) > 2.0 * STANDS_MPS);
         let ego_goes = to + 1 < self.until && self.gives_way(from);
+        // Who stands again has moved up, and is close ahead yet.
+        let close = self.beside(track, self.until).0 < AHEAD_M + 0.5 * track.length_m + self.stopping_m(self.until);
+        let again = extra.again && ego_goes && close && Self::mps(track, self.until) < CREEPS_MPS;
         let in_order = match (extra.goes, goes) {
+            (false, Some(goes)) if again => goes <= to + 1,
             (false, goes) => goes.is_none(),
             (true, Some(goes)) => !ego_goes || goes <= to + 1,
             (true, None) => false,

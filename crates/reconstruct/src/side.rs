@@ -77,6 +77,8 @@ pub(crate) struct Side {
     pub(crate) stopped_aside: Option<Act>,
     /// It changed lanes on its way, and goes straight on since.
     pub(crate) changed_lanes: bool,
+    /// It is told to merge into a lane that is no other than the one where they touch.
+    pub(crate) merges_in: bool,
     /// It changed lanes on its way to its first stop: to this side, where told.
     pub(crate) came_over: Option<Option<LeftRight>>,
     /// It changed lanes to pass.
@@ -195,13 +197,19 @@ pub(crate) fn side(party: &Party, kind: Option<Kind>, assumed: &mut Vec<String>,
         Slowed(approach.map(|speed| speed.value.mps).filter(|_| !stood_first))
     });
     // Of somebody on foot, an animal or a thing the state says enough.
-    let drives =
-        kind.is_none_or(|kind| !matches!(kind.group(), KindGroup::OnFoot | KindGroup::Animal | KindGroup::Object));
+    let rides = |kind: Kind| matches!(kind, Kind::ScooterRider | Kind::Skateboarder);
+    let drives = kind.is_none_or(|kind| {
+        rides(kind) || !matches!(kind.group(), KindGroup::OnFoot | KindGroup::Animal | KindGroup::Object)
+    });
     let phases = match state_told && state != ContactState::Parked && (drives || who == "ego") {
         true => phases::told(party, state),
         false => Vec::new(),
     };
-    let acts = if drives || who == "ego" { acts::told(party, state) } else { Vec::new() };
+    let mut acts = if drives || who == "ego" { acts::told(party, state) } else { Vec::new() };
+    if kind.is_some_and(rides) {
+        // On small wheels it turns at once.
+        acts.retain(|doing| !doing.is_turn());
+    }
     let stopped = last_way(party).filter(|_| state == ContactState::Stopped && turning == Turning::No && who == "ego");
     let stopped_aside = stopped.filter(|fact| leaves_line(fact.act) || fact.act == Act::Pass && fact.side.is_some());
     let aside = stopped_aside.and_then(|fact| fact.side).or(aside);
@@ -214,6 +222,7 @@ pub(crate) fn side(party: &Party, kind: Option<Kind>, assumed: &mut Vec<String>,
     Side {
         aside,
         changed_lanes,
+        merges_in: merges_in(party, movement),
         came_over: came_over(party),
         passes,
         goes_round: false,
@@ -448,4 +457,13 @@ pub(crate) fn size_of(kind: Kind) -> Option<Size> {
         }
         _ => None,
     }
+}
+
+/// Whether somebody is told to change lanes "into" something that is no lane with a name, to no side: into the lane of whom it touches.
+fn merges_in(party: &Party, movement: Option<Movement>) -> bool {
+    let into = |source: &Source| matches!(source, Source::Words { text, .. } if text.to_lowercase().ends_with(" into"));
+    let changes = |fact: &&ActFact| fact.act == Act::LaneChange && !fact.after_contact && !fact.begun;
+    let last = party.acts.iter().filter(changes).next_back();
+    let merges = matches!(movement, Some(Movement::Merging | Movement::ChangingLanes)) && party.lane.is_none();
+    merges && last.is_some_and(|fact| fact.side.is_none() && into(&fact.source))
 }

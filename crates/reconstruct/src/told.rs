@@ -12,6 +12,7 @@ use crate::phases::{self, CONTACT_S};
 use crate::roadside;
 use crate::side::{Side, Slant, Turning, side};
 use crate::things::{self, Lies};
+use crate::thrown::{self, Thrower};
 use crate::touch::side_of;
 use crate::trailer::{self, Rig};
 use recrash_model::account::{
@@ -78,6 +79,7 @@ pub(crate) struct Told {
     /// Somebody threw the partner at the subject vehicle; and who, where told.
     pub(crate) pushed: bool,
     pub(crate) pusher: Option<Kind>,
+    pub(crate) thrower: Option<Thrower>,
     /// Who touched the partner first is told to stand: the partner ran into it.
     pub(crate) pusher_stands: bool,
     /// Who was pushed is told to have come along or slowed, and not to have stood.
@@ -243,6 +245,7 @@ impl Told {
                 || crash_type == CrashType::Secondary
                 || account.others.iter().any(|other| other.touched_partner),
             pusher: others::pusher(account),
+            thrower: thrown::thrower(account),
             pusher_stands: others::pusher_stands(account),
             pushed_rolling,
             throwers: account.others.iter().filter(|other| other.touched_partner).count().min(1),
@@ -605,6 +608,7 @@ impl Told {
         let from_left = own_left.map(|own| own * against).or_else(|| match self.origin {
             // Who parks does so on the right; who came along behind the ego leaves its lane.
             _ if self.cp.movement == Some(Movement::ParkingManeuver) => Some(against),
+            Origin::Behind if self.cp.merges_in => side_of(&self.sv.zones),
             Origin::Behind => side_of(&self.sv.zones).map(|side| -side),
             Origin::Beside { side } | Origin::Parked { side: Some(side) } => {
                 Some(if side == LeftRight::Left { 1.0 } else { -1.0 })

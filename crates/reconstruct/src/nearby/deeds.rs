@@ -3,7 +3,7 @@
 use super::{DRIVES_MPS, RIDES_MPS, Scene, Way, place, tenth};
 use crate::extras::stands;
 use crate::ground::{LANE_M, corner_m};
-use crate::near::{Does, Near};
+use crate::near::{Does, First, Near};
 use crate::pace::when;
 use crate::speeds::{TURNS_MPS, WALKS_MPS};
 use crate::things::SLIDES_MPS;
@@ -136,6 +136,14 @@ impl Scene<'_> {
             froms.iter().map(goes).collect::<Vec<_>>()
         };
         times.into_iter().flat_map(off).collect()
+    }
+
+    /// Where somebody stands: who is told to have come along comes there.
+    pub(super) fn comes_or_stands(&self, near: Near, places: Vec<Way>) -> Vec<Way> {
+        match near.first {
+            First::Came => places.iter().map(|way| self.coming_to(way)).collect(),
+            _ => places,
+        }
     }
 
     /// From beyond the lanes of one side to those of the other: it is in them at the contact, or has crossed them.

@@ -15,6 +15,7 @@ mod near;
 mod near_deeds;
 mod others;
 mod places;
+mod places_of_others;
 mod roadside;
 mod sabotage;
 mod steps;

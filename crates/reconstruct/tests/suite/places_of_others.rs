@@ -1,0 +1,85 @@
+//! Others come to where they are told to stand, go on where only the ego stays, and run into the partner from where they are told to come.
+
+use crate::others::{shown_but, told, track};
+use crate::ways::{before_contact, made, partner, story};
+use recrash_model::account::{Act, ContactState, Fact, LeftRight, Origin, StandReason};
+use recrash_model::metrics::{CheckKind, CheckResult};
+use recrash_model::scenario::{Actor, ActorPlan};
+use recrash_reconstruct::{held_against, reconstruct};
+
+const LETS_IN: &str = "The AV was stopped in a queue of traffic for a red light at the intersection of Elm Street and Oak Street. When the light turned green, the AV \
+                       remained stopped. A van pulled out of a driveway on the right, and the front left of the van made contact with the right side of the AV.";
+const NARROW: &str = "The AV was stopped on a narrow street, yielding to an oncoming van. The van proceeded forward and passed the AV, and the left side of the van made \
+                      contact with the rear left of the AV.";
+const COMES_AND_STOPS: &str = "The AV was stopped behind an SUV on Elm Street. A truck in the oncoming lane approached and came to a stop. The SUV began to reverse and the \
+                               rear of the SUV made contact with the front of the stationary AV.";
+const THROWN: &str = "The AV was stopped at a red light in the right lane on Elm Street, and a sedan was stopped behind it. A van in the left lane changed lanes to the right and \
+                      made contact with the rear of the sedan, pushing the sedan into the AV. The front of the sedan made contact with the rear of the AV.";
+const THROUGH: &str = "The AV was traveling north on Elm Street and slowed as it was proceeding through the intersection with Oak Street. A sedan approached from behind and \
+                       the front of the sedan made contact with the rear of the AV.";
+
+fn stands_from_the_start(actor: &mut Actor) {
+    actor.plan = ActorPlan::standing(actor.plan.start.clone());
+}
+
+#[test]
+fn a_queue_drives_on_at_green_where_only_the_ego_stays() {
+    let shown = made(&told(LETS_IN));
+    let (lead, last) = (track(&shown, "lead"), before_contact(&shown));
+    assert!(lead.states[last].x - lead.states[0].x > 1.5 && lead.states[last].speed() > 1.0, "{:?}", lead.states[last]);
+}
+
+#[test]
+fn the_partner_to_whom_the_ego_gives_way_is_nobody_ahead() {
+    let mut account = story(NARROW);
+    let yields = account.sv.reasons.iter().find(|fact| fact.value == StandReason::Yield).expect("told").source.clone();
+    account.sv.reasons.retain(|fact| fact.value != StandReason::LeadVehicle);
+    account.sv.reasons.push(Fact { value: StandReason::LeadVehicle, source: yields });
+    let shown = made(&account);
+    assert!(shown.rollout.actors.iter().all(|track| track.id != "lead"));
+    assert!(shown.verdict.checks.iter().all(|check| check.kind != CheckKind::Reason), "{:?}", shown.verdict);
+}
+
+#[test]
+fn who_is_told_to_come_along_and_stop_does_not_stand_from_the_start() {
+    let shown = shown_but(COMES_AND_STOPS, "near", stands_from_the_start);
+    let (near, last) = (track(&shown, "near"), before_contact(&shown));
+    assert!(near.states[0].speed() > 2.0 && near.states[last].speed() == 0.0, "{:?}", near.states[last]);
+}
+
+#[test]
+fn who_throws_the_partner_comes_out_of_the_lane_where_it_is_told() {
+    let mut account = story(THROWN);
+    account.others.retain(|other| other.touched_partner);
+    let thrower = account.others.first_mut().expect("told");
+    thrower.place = Some(Fact::by_rule(Origin::Beside { side: LeftRight::Left }, "a test"));
+    let shown = made(&account);
+    let (pusher, (_, met)) = (track(&shown, "pusher"), partner(&shown));
+    assert!(pusher.states[0].y - met.y > 2.0, "{:?}", pusher.states[0]);
+    let passed = shown.verdict.checks.iter().find(|check| check.kind == CheckKind::PassedOn).expect("told");
+    assert_eq!(passed.result, CheckResult::Shown);
+    // Told on the other side it is not shown.
+    account.others[0].place = Some(Fact::by_rule(Origin::Beside { side: LeftRight::Right }, "a test"));
+    let scenario = recrash_roads::check(shown.draft).expect("it ran").value;
+    let verdict = held_against(&account, &scenario, &shown.rollout).expect("it can be staged");
+    let passed = verdict.checks.iter().find(|check| check.kind == CheckKind::PassedOn).expect("told");
+    assert_eq!(passed.result, CheckResult::CannotBeShown);
+}
+
+#[test]
+fn an_ego_that_is_told_in_the_junction_of_a_street_is_in_one() {
+    let account = story(THROUGH);
+    assert!(account.sv.acts.iter().any(|fact| fact.act == Act::Enter), "{:?}", account.sv.acts);
+    let shown = made(&account);
+    let acts = shown.verdict.checks.iter().find(|check| check.kind == CheckKind::SvActs).expect("told");
+    assert!(acts.result == CheckResult::Shown && acts.expected.contains("entered the junction"), "{acts:?}");
+    // On a road without one it is not shown.
+    let mut without = account.clone();
+    without.sv.acts.retain(|fact| fact.act != Act::Enter);
+    without.sv.state = Some(Fact::by_rule(ContactState::Moving, "a test"));
+    let plain = reconstruct(&without).expect("it can be staged");
+    let scenario = recrash_roads::check(plain.draft).expect("it ran").value;
+    let verdict = held_against(&account, &scenario, &plain.rollout).expect("it can be staged");
+    let acts = verdict.checks.iter().find(|check| check.kind == CheckKind::SvActs).expect("told");
+    assert_eq!(acts.result, CheckResult::CannotBeShown, "{acts:?}");
+}
