@@ -73,7 +73,7 @@ impl Extra {
         match self.role {
             Role::Near => self.near.map_or("", Near::words),
             Role::Lead if self.goes => "one stands ahead and drives on",
-            Role::Lead if self.again => "one stands ahead, moves up and stands again",
+            Role::Lead if self.again => "one stands ahead, and again",
             Role::Lead => "one stands ahead",
             Role::Slower => "one ahead slows",
             Role::Walker if self.stays => "somebody stays close",

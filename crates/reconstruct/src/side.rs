@@ -463,7 +463,7 @@ pub(crate) fn size_of(kind: Kind) -> Option<Size> {
 fn merges_in(party: &Party, movement: Option<Movement>) -> bool {
     let into = |source: &Source| matches!(source, Source::Words { text, .. } if text.to_lowercase().ends_with(" into"));
     let changes = |fact: &&ActFact| fact.act == Act::LaneChange && !fact.after_contact && !fact.begun;
-    let last = party.acts.iter().filter(changes).next_back();
+    let last = party.acts.iter().rfind(changes);
     let merges = matches!(movement, Some(Movement::Merging | Movement::ChangingLanes)) && party.lane.is_none();
     merges && last.is_some_and(|fact| fact.side.is_none() && into(&fact.source))
 }

@@ -7,6 +7,8 @@ use recrash_model::metrics::{CheckKind, CheckResult};
 use recrash_model::scenario::{Actor, ActorPlan};
 use recrash_reconstruct::{held_against, reconstruct};
 
+const STANDS_AGAIN: &str = "The AV was stopped behind a sedan in a queue of traffic for a red light. The sedan proceeded forward, and the AV proceeded forward a short distance and \
+                            came to a stop. A van approached from behind and the front of the van made contact with the rear of the stationary AV.";
 const LETS_IN: &str = "The AV was stopped in a queue of traffic for a red light at the intersection of Elm Street and Oak Street. When the light turned green, the AV \
                        remained stopped. A van pulled out of a driveway on the right, and the front left of the van made contact with the right side of the AV.";
 const NARROW: &str = "The AV was stopped on a narrow street, yielding to an oncoming van. The van proceeded forward and passed the AV, and the left side of the van made \
@@ -20,6 +22,18 @@ const THROUGH: &str = "The AV was traveling north on Elm Street and slowed as it
 
 fn stands_from_the_start(actor: &mut Actor) {
     actor.plan = ActorPlan::standing(actor.plan.start.clone());
+}
+
+#[test]
+fn who_is_told_to_stand_again_ahead_of_an_ego_that_moves_up_does_not_drive_on() {
+    let mut account = told(STANDS_AGAIN);
+    let stop = account.sv.acts.iter().rfind(|fact| fact.act == Act::Stop).expect("told").clone();
+    let sedan = account.others.first_mut().expect("told");
+    sedan.acts.push(recrash_model::account::ActFact { after_other: None, ..stop });
+    let shown = made(&account);
+    let (lead, ego, last) = (track(&shown, "lead"), shown.rollout.ego_track(), before_contact(&shown));
+    assert!(lead.states[last].x - lead.states[0].x > 1.0, "it moves up");
+    assert!(lead.states[last].speed() < 0.1 && lead.states[last].x - ego.states[last].x < 14.0, "and stands");
 }
 
 #[test]
