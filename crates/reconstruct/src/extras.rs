@@ -26,6 +26,9 @@ const WALKER_BETWEEN_M: f64 = 0.5 * LEAD_GAP_M;
 const BRAKES_MPS2: f64 = 2.5;
 pub(crate) const ROOM_M: f64 = 2.0;
 
+/// From the front of an ego that leaves its lane behind somebody to that one, where it is touched. [m]
+const CLEAR_M: f64 = 1.0;
+
 /// Who drives ahead of the ego is so far ahead of it, and slows so much earlier. [m, s]
 const HEADWAY_M: f64 = 7.0;
 const EARLIER_S: f64 = 0.4;
@@ -255,7 +258,10 @@ impl Scene<'_> {
             Some(aside) => {
                 let changes = aside.to_t_m.abs() >= LANE_M && !leaves_lane(self.told);
                 let lane_m = if changes { aside.to_t_m } else { 0.0 };
-                self.ground.pose(s_m + ahead_m + ROOM_M, lane_m)
+                // Clear of an ego that is on its way out.
+                let met_m = self.at(self.until).0 + self.front_m() + 0.5 * length_m + CLEAR_M;
+                let clear_m = if stand.is_some() && leaves_lane(self.told) { met_m } else { 0.0 };
+                self.ground.pose((s_m + ahead_m + ROOM_M).max(clear_m), lane_m)
             }
             // In the lane beside one at the kerb.
             None if at_kerb => self.ground.pose(s_m + ahead_m, 0.0),
@@ -623,8 +629,9 @@ impl Scene<'_> {
         let line_m = self.told.sv_aside().map(|aside| aside.from_t_m);
         // In the lane into which the ego comes back, before that.
         if let Some(aside) = self.told.sv_aside().filter(|_| extra.behind) {
-            let leaves = |step: &usize| (self.at(*step).1 - aside.from_t_m).abs() > RETURNS_M;
-            let from = (0..self.until).find(leaves).unwrap_or(self.until);
+            // It may have begun in that lane itself.
+            let outside = |step: &usize| (self.at(*step).1 - aside.from_t_m).abs() <= RETURNS_M;
+            let from = (0..self.until).rev().find(outside).unwrap_or(self.until);
             let pose =
                 self.ground.pose(self.at(from).0 - self.front_m() - 0.5 * length_m, aside.to_t_m.signum() * LANE_M);
             return ActorPlan::standing(Place::at(pose.position.x, pose.position.y, pose.heading.to_degrees()));

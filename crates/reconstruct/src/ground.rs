@@ -432,7 +432,7 @@ fn has(told: &Told, role: Role) -> bool {
 fn passes_right(told: &Told) -> bool {
     let in_lane = told.cp.lane.and_then(strip_of).is_none();
     // Who stands beside the lanes does so beside the outermost.
-    let in_lane = in_lane && !told.stands_beside(false);
+    let in_lane = in_lane && !told.stands_beside(false) && told.thing.is_none();
     let touched = |zone: &ContactZone| matches!(zone, ContactZone::Right | ContactZone::FrontRight);
     let moves = told.cp.state == ContactState::Moving;
     let passes = told.cp.movement == Some(Movement::Passing) && side_of(&told.sv.zones) == Some(-1.0)

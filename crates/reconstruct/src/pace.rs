@@ -135,6 +135,7 @@ pub(crate) fn ego_paces(told: &Told, ground: &Ground, sv_s_m: f64) -> (Option<Le
         .or_else(|| before_who_waits(told))
         .or_else(|| before_who_backs(told))
         .or_else(|| towards_who_stands(told))
+        .or_else(|| out_of_line(told, ground))
         .or_else(|| roadside::slows_in_turn(told, past_line_m(told, ground, sv_s_m)))
         .unwrap_or_else(|| braked_earlier(pace(contact_s, sv, told.choices.rolling_mps, stood_s), longer_s));
     let begins_s = match sv.state.stands() {
@@ -203,6 +204,25 @@ fn towards_who_stands(told: &Told) -> Option<Pace> {
     let straight = sv.state == ContactState::Moving && sv.turning == Turning::No && !enters;
     let plain = sv.stood_first && straight && ahead && sv.slowed_from.is_none() && sv.phases.is_empty();
     start_over(told.contact_s, sv.speed_mps, MOVES_UP_M).filter(|_| plain)
+}
+
+/// An ego that stood and leaves its line has driven so many times as far as it goes aside, so that it does not turn across the road; who has
+/// just set off has done so for so long at most. [1, s]
+const LEAVES_BY: f64 = 2.4;
+const JUST_S: f64 = 5.5;
+
+/// Who stood and leaves its line sets off from far enough for that.
+fn out_of_line(told: &Told, ground: &Ground) -> Option<Pace> {
+    let sv = &told.sv;
+    let aside = told.sv_aside().filter(|aside| !aside.done && ground.drift.is_none())?;
+    let sets_off = sv.state == ContactState::SettingOff;
+    let stood = sets_off || sv.state == ContactState::Moving && (sv.stood_first || !sv.phases.is_empty());
+    let least_m = LEAVES_BY * (aside.to_t_m - aside.from_t_m).abs();
+    let just_m = sv.speed_mps * (JUST_S - 0.5 * sv.speed_mps / SETS_OFF_MPS2);
+    let driven_m = if sets_off { least_m.min(just_m) } else { least_m };
+    let usual_m = pace(told.contact_s, sv, told.choices.rolling_mps, told.choices.stood_s).driven_m;
+    let plain = stood && sv.slowed_from.is_none() && driven_m > usual_m;
+    start_over(told.contact_s, sv.speed_mps, driven_m).filter(|_| plain)
 }
 
 /// Who waited behind somebody sets off so long after it, or before it where that is told. [s]

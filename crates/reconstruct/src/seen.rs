@@ -4,7 +4,7 @@ use crate::control;
 use crate::extras::{STANDS_MPS, stands, stood_behind};
 use crate::ground::LANE_M;
 use crate::near::{Near, SLOWED_MPS};
-use crate::others::{Extra, GIVEN_WAY, Role, waits_ahead};
+use crate::others::{Extra, GIVEN_WAY, Role, leaves_lane, waits_ahead};
 use crate::told::Told;
 use recrash_model::account::{ContactState, Kind, LeftRight, Origin, StandReason};
 use recrash_model::geometry::Vec2;
@@ -24,6 +24,9 @@ const CLOSE_M: f64 = 4.0;
 
 /// Who is parked beside the way is no farther off, ahead or behind. [m]
 const PARKED_M: f64 = 40.0;
+
+/// Behind whom an ego leaves its lane, it has so much more room for that. [m]
+const OUT_M: f64 = 4.0;
 
 /// An ego that is slower than this waits as it rolls. [m/s]
 const CREEPS_MPS: f64 = 0.6;
@@ -219,7 +222,11 @@ impl<'a> Seen<'a> {
         let (ahead_m, left_m) = self.beside(track, from);
         // Behind or beside a partner that stands in the queue too.
         let at_kerb = self.told.is_at_kerb() && matches!(self.told.origin, Origin::Beside { .. });
-        let queue_m = if waits_ahead(self.told) || at_kerb { PARKED_M } else { 0.0 };
+        let queue_m = match () {
+            () if waits_ahead(self.told) || at_kerb => PARKED_M,
+            () if leaves_lane(self.told) => OUT_M,
+            () => 0.0,
+        };
         let within_m = AHEAD_M + 0.5 * track.length_m + self.stopping_m(from) + queue_m;
         let there = ahead_m > 0.0 && math::hypot(ahead_m, left_m) < within_m && left_m.abs() < LANE_M;
         let stood = Self::mps(track, from) < STANDS_MPS;

@@ -17,6 +17,9 @@ const AFTER_MPS: f64 = 5.2;
 /// Who sets off behind an ego that moves is faster than it by so much. [m/s]
 const SETS_OFF_FASTER_MPS: f64 = 1.0;
 
+/// Who backs towards an ego that backs away is faster than it by so much. [m/s]
+const BACKS_FASTER_MPS: f64 = 0.5;
+
 /// Who turns beside an ego that turns is faster than it by so much. [m/s]
 const ABREAST_MPS: f64 = 1.0;
 
@@ -147,6 +150,11 @@ impl Told {
                 Origin::Ahead if sv > 0.5 => self.cp.speed_mps = self.cp.speed_mps.min((sv - 2.0).max(0.3)),
                 _ => {}
             }
+        }
+        // Who backs towards an ego that backs away is faster.
+        let both_back = self.cp.state == ContactState::Reversing && self.sv.state == ContactState::Reversing;
+        if self.cp.impact_mps.is_none() && both_back && self.origin == Origin::Ahead {
+            self.cp.speed_mps = self.cp.speed_mps.max(self.sv.speed_mps + BACKS_FASTER_MPS);
         }
         self.cp.speed_mps = self.dropped_mps().unwrap_or(self.cp.speed_mps);
         if self.cp.impact_mps.is_none() && self.gives_way_to_merge {

@@ -214,3 +214,24 @@ fn who_pulls_out_from_the_far_kerb_stood_there() {
     let (_, left_m) = begins(&shown);
     assert!(left_m > 5.1, "{left_m} m to the left");
 }
+
+#[test]
+fn who_changes_lanes_from_a_stand_does_not_turn_across_the_road() {
+    let text = "The AV was stopped behind a parked van. The AV began to change lanes to the left at 7 mph, and a sedan traveling in the left \
+                lane made contact with the left side of the AV with its front right.";
+    let made = made(&story(text));
+    let states = &made.rollout.ego_track().states[..=before_contact(&made)];
+    let most = states.iter().map(|state| degrees_between(state.heading, 0.0)).fold(0.0, f64::max);
+    assert!(states[0].speed() < 0.1 || speeds(&made).iter().any(|speed| *speed < 0.1));
+    assert!(most < 25.0, "{most} degrees");
+}
+
+#[test]
+fn who_backs_to_an_ego_that_backs_away_does_so_in_its_lane() {
+    let text = "The AV was stopped behind an SUV in its lane on Elm Street. The SUV began to reverse. The AV reversed at 3 mph away from the \
+                SUV, and the rear of the SUV made contact with the front of the AV.";
+    let made = made(&story(text));
+    let states = &partner(&made).0[..=before_contact(&made)];
+    let ego = made.rollout.ego_track().states[before_contact(&made)];
+    assert!(states.iter().all(|state| (state.y - ego.y).abs() < 1.5), "{:?}", states[0]);
+}
