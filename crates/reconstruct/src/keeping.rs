@@ -156,7 +156,7 @@ pub(crate) fn weaves(told: &Told, track: &ActorTrack, contact_s: f64) -> usize {
     let aside_m = track.states[..=until].iter().map(aside_m).fold(0.0, f64::max);
     let turned = math::wrap_angle(last.heading - first.heading).abs();
     let beside = matches!(told.origin, Origin::Beside { .. });
-    let stays = !told.leaves_its_lane() || told.comes_straight_by();
+    let stays = !told.leaves_its_lane() || told.comes_straight_by() || told.passes_in_own_lane();
     let sideways = |pair: &[ActorState]| {
         let rate = math::wrap_angle(pair[1].heading - pair[0].heading).abs() / STEP_S;
         rate * pair[0].velocity().length()
@@ -227,6 +227,25 @@ impl Told {
     fn comes_straight_by(&self) -> bool {
         let aside = |doing: &Doing| doing.is_aside() && !doing.is_pass();
         self.is_passed_by_oncoming() && !self.comes_over && !self.cp.dodges && !self.cp.acts.iter().any(aside)
+    }
+
+    /// Whether the partner comes by in a lane of its own: it has not to come out of the ego's for that, nor round who stands in it.
+    pub(crate) fn has_own_lane(&self) -> bool {
+        let beside = match self.origin {
+            Origin::Beside { .. } => true,
+            Origin::Behind => self.comes_along_kerb() || self.cp.movement == Some(Movement::Passing),
+            Origin::Opposite => self.comes_straight_by(),
+            _ => false,
+        };
+        beside && self.cp.turning == Turning::No && (!self.passes_from_behind() || self.comes_along_kerb())
+    }
+
+    /// Whether the partner passes so, and is not told to have changed lanes, drifted or entered.
+    fn passes_in_own_lane(&self) -> bool {
+        let aside = |doing: &Doing| doing.is_aside() && !doing.is_pass();
+        let plain = !self.cp.dodges && !self.cp.changed_lanes && !self.comes_along_kerb();
+        let passes = self.cp.movement == Some(Movement::Passing) && self.has_own_lane();
+        passes && plain && !self.cp.acts.iter().any(aside)
     }
 
     /// Whether a partner that is told behind the ego is beside its lane, or ahead of it.

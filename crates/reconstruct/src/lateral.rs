@@ -196,7 +196,10 @@ impl Told {
             self.cp.movement,
             Some(Movement::CrossingIntoOpposingLane | Movement::WrongWay | Movement::UTurn | Movement::Passing)
         );
-        let drives = self.cp.state == ContactState::Moving && self.cp.turning == Turning::No;
+        // Who backs out of the lane ahead does so in that.
+        let backs = self.origin == Origin::Ahead && self.cp.state == ContactState::Reversing;
+        let backs = backs && self.cp.slants.is_none() && !self.cp.backs_in;
+        let drives = (self.cp.state == ContactState::Moving || backs) && self.cp.turning == Turning::No;
         let street = !matches!(
             self.place,
             PlaceKind::Highway | PlaceKind::ParkingLot | PlaceKind::Garage | PlaceKind::Driveway | PlaceKind::Alley
@@ -355,6 +358,12 @@ pub(crate) fn keeps_lane(told: &Told, staging: &Staging, pace: &Pace, arm_m: f64
 const OUT_M: f64 = 6.0;
 const COMES_OUT_M: f64 = 24.0;
 
+/// Who comes out to pass has not gone to the other side by more than this before. [m]
+const DIPS_M: f64 = 0.3;
+
+/// Who is at more than this to its road, away from whom it passes, is on its way out. [rad]
+const AWAY_RAD: f64 = 0.02;
+
 /// The same of who stood close behind it, with no tighter bend, or of so much of its length. [m]
 const STOOD_OUT_M: f64 = 4.0;
 const STOOD_RADIUS_M: f64 = 5.5;
@@ -381,6 +390,14 @@ pub(crate) fn comes_by(told: &Told, staging: &Staging, pace: &Pace, arm_m: f64) 
     let leaves = told.sv_aside().is_some();
     let along = told.comes_along_kerb() || turns || leaves;
     let own_y_m = if along { staging.ground.sv_pose(0.0).position.y } else { staging.sv.position.y };
+    // Who is yet on its way out comes straight out of its lane, and does not go to the side of whom it passes for that first.
+    let side = (cp.position.y - staging.sv.position.y).signum();
+    if !stood && comes_in * side > AWAY_RAD {
+        let late = lanes::from_lane(told, staging, pace, arm_m);
+        if late.is_some() || (own_y_m - out_y_m) * side > DIPS_M {
+            return late;
+        }
+    }
     let back_m = (pace.driven_m - 0.5).min(out_m + COMES_OUT_M);
     let bends_m = (4.0 * radius_m * (out_y_m - own_y_m).abs()).sqrt();
     if back_m - out_m < bends_m {

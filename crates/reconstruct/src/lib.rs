@@ -207,7 +207,7 @@ fn searched(told: told::Told, account: &Account, most_runs: usize) -> Result<Fou
                 }
             }
         }
-        if search.best.as_ref().is_some_and(|best| best.cost.0 == 0 && !best.is_absurd()) {
+        if search.best.as_ref().is_some_and(Best::is_good) {
             break;
         }
     }
@@ -310,6 +310,11 @@ impl Best {
     /// Whether every told fact is shown, and nobody strays.
     fn shows_all(&self) -> bool {
         matches!(self.cost, (0, false, false, 0, _))
+    }
+
+    /// Whether every told fact is shown, nobody strays, and the partner's way is none that nobody would drive.
+    const fn is_good(&self) -> bool {
+        matches!(self.cost, (0, false, false, ..)) && !self.is_absurd()
     }
 
     /// Whether the partner's way is one that nobody would drive.

@@ -11,6 +11,7 @@ use recrash_model::account::ContactState;
 use recrash_model::geometry::{OrientedBox, Pose, Vec2};
 use recrash_model::math;
 use recrash_model::scenario::{Leg, Place};
+use recrash_model::template::Movement;
 use recrash_model::vehicle::VehicleSpec;
 use recrash_model::zones::ContactZone;
 use recrash_roads::{Course, arm_m};
@@ -54,9 +55,15 @@ pub(crate) fn stagings(told: &Told, ground: &Rc<Ground>, mut trial: usize, neare
                     {
                         trial += 1;
                         let Some((cp, seen)) = way.touch(told, sv_point, cp_point) else { continue };
+                        let from = back(told, cp, curvature, length_m);
+                        if told.has_own_lane()
+                            && math::wrap_angle(from.heading - came) * beside(came, sv, cp) > AWAY_RAD
+                        {
+                            continue;
+                        }
                         let off = off(seen.0, seen.1);
                         let trial = trial + if swings_out(told, sv, cp, curvature) { BENT } else { 0 };
-                        let bend = Some(Bend { from: back(told, cp, curvature, length_m), length_m });
+                        let bend = Some(Bend { from, length_m });
                         found.push(Staging {
                             ground: Rc::clone(ground),
                             sv_s_m,
@@ -81,11 +88,20 @@ fn bends(told: &Told) -> impl Iterator<Item = (f64, f64)> {
     let most = 1.0 / turn_m(told);
     let [tight, wide] = BENDS;
     // Who passes does so gently, where that shows as much.
-    let parts = if told.passes_from_behind() { [wide, tight] } else { [tight, wide] };
+    let passes = told.passes_from_behind() || told.cp.movement == Some(Movement::Passing);
+    let parts = if passes { [wide, tight] } else { [tight, wide] };
     parts
         .into_iter()
         .flat_map(move |part| [part * most, -part * most])
         .flat_map(|bend| BY_RAD.map(|by_rad| (bend, by_rad)))
+}
+
+/// Who comes by in a lane of its own does not turn away from the ego by more than this, to turn to it then. [rad]
+const AWAY_RAD: f64 = 0.02;
+
+/// On which side of the ego somebody is by the way that it came: 1 left, -1 right.
+fn beside(came: f64, sv: Pose, cp: Pose) -> f64 {
+    Vec2::from_heading(came).cross(cp.position - sv.position).signum()
 }
 
 /// Whether somebody who passes would swing out of the ego's lane as late as it touches: it is out by then, and comes in.

@@ -80,3 +80,28 @@ fn who_sets_off_towards_one_that_is_parked_is_not_there_from_the_start() {
     let order = shown.verdict.checks.iter().find(|check| check.kind == CheckKind::Order).expect("an order");
     assert_eq!(order.result, CheckResult::Shown);
 }
+
+/// By how much the partner turns one way and back the other until the contact. [deg]
+fn weaves_deg(made: &Reconstruction) -> f64 {
+    let turns = partner(made).0[..=before_contact(made)]
+        .windows(2)
+        .map(|pair| math::wrap_angle(pair[1].heading - pair[0].heading));
+    let (all, net) = turns.fold((0.0, 0.0), |(all, net), turn: f64| (all + turn.abs(), net + turn));
+    (all - net.abs()).to_degrees()
+}
+
+#[test]
+fn who_passes_in_a_lane_of_its_own_does_not_turn_away_to_rub_along_whom_it_passes() {
+    for text in [
+        "The AV was parked at the curb on Elm Street. A sedan passed the parked AV on its left, and the right side of the sedan made contact \
+         with the rear left corner of the AV.",
+        "The AV was stopped in the right lane. A bus traveling in the left lane passed the AV on the left, and the right side of the bus made \
+         contact with the rear left of the AV.",
+    ] {
+        let shown = made(&story(text));
+        assert!(weaves_deg(&shown) < 30.0, "{} degrees: {text}", weaves_deg(&shown));
+        // It is on its own side of the ego all the way.
+        let ego = shown.rollout.ego_track().states[before_contact(&shown)];
+        assert!(partner(&shown).0[..=before_contact(&shown)].iter().all(|state| state.y > ego.y + 1.0), "{text}");
+    }
+}
