@@ -64,6 +64,9 @@ const AGAIN_RUNS: usize = 100;
 /// Where one shows all that is told and nobody strays, no more are run to find one that keeps its lane better.
 const ENOUGH_RUNS: usize = 36;
 
+/// Where somebody strays in the best that shows all that is told, so many more are run after the first of every variant.
+const BETTER_RUNS: usize = 100;
+
 /// Where its way is absurd, so many are.
 const ABSURD_RUNS: usize = 100;
 
@@ -209,6 +212,10 @@ fn searched(told: told::Told, account: &Account, most_runs: usize) -> Result<Fou
         }
         if search.best.as_ref().is_some_and(Best::is_good) {
             break;
+        }
+        // What shows all that is told has to be found better soon.
+        if search.best.as_ref().is_some_and(|best| best.cost.0 == 0) {
+            search.most_runs = search.most_runs.min(search.runs + BETTER_RUNS);
         }
     }
     let Search { best, fullest, refused, .. } = search;
