@@ -49,7 +49,11 @@ fn comes_behind(reading: &Reading<'_>, first: usize, second: usize) -> bool {
             happens(reading, two) && opens(reading, first) && (first < second || behind())
         }
         // "It was turning when the van pulled out": what went on had begun.
-        (true, None, Some(Joint::While)) => first < second && goes_on(reading, one) && happens(reading, two),
+        // "It began to pass when the van pulled out".
+        (true, None, Some(Joint::While)) => {
+            let begun = || begins(reading, one) && begins_with_when(reading, first, second);
+            first < second && (goes_on(reading, one) || begun()) && happens(reading, two)
+        }
         // "It stopped before the van turned".
         (true, None, Some(Joint::Before)) => happens(reading, one) && happens(reading, two),
         (true, Some(_), _) | (true, _, Some(_)) => false,
@@ -104,6 +108,13 @@ fn happens(reading: &Reading<'_>, frame: &Frame) -> bool {
     let event = frame.act().is_some_and(|act| !matches!(act, Act::Follow | Act::Hold | Act::Pushed));
     let told = matches!(frame.form, Form::Past | Form::Present) || frame.progress == Progress::Tried;
     event && (told || is_begun(reading, frame)) && !frame.state && frame.happened()
+}
+
+/// "began to turn", "started passing".
+pub(super) fn begins(reading: &Reading<'_>, frame: &Frame) -> bool {
+    let from = reading.story.sentences[frame.sentence].first.max(frame.first.saturating_sub(3));
+    let before = &reading.story.tokens[from..=frame.first];
+    frame.act().is_some() && before.iter().any(|token| ["beg", "start"].iter().any(|stem| token.text.starts_with(stem)))
 }
 
 /// "began to turn", "proceeded to make a turn", "started reversing".

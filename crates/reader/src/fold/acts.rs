@@ -1,6 +1,8 @@
 //! What somebody did, in order, each act with its side.
 
 use super::Reading;
+use super::across::begins;
+use super::entry::{self, reach};
 use crate::chunk::{Joint, Spot};
 use crate::frame::{Frame, sided};
 use crate::lexicon::{Lexicon, Progress, Relation, Sense};
@@ -29,12 +31,16 @@ pub(super) fn acts(reading: &Reading<'_>, actor: Actor) -> Vec<ActFact> {
             side,
             step: number as u32,
             after_contact,
-            begun: frame.progress == Progress::Tried,
+            begun: frame.progress == Progress::Tried || begins_to_pass(reading, actor, frame, act),
             done: is_done(reading, frame),
             after_other: None,
             manner: manner(reading, number),
             source: reading.words(frame.first, reach(reading, frame, act)),
         };
+        let entry = entry::beside(reading, frame, &fact);
+        if let Some(entry) = entry.as_ref().filter(|entry| entry.before) {
+            enters(&mut all, &entry.fact);
+        }
         let in_passing = frame.aside && all.iter().any(|known| known.act == act);
         match all.last_mut() {
             Some(last)
@@ -43,6 +49,8 @@ pub(super) fn acts(reading: &Reading<'_>, actor: Actor) -> Vec<ActFact> {
                     && (last.side == side || side.is_none() || last.side.is_none()) =>
             {
                 last.side = last.side.or(side);
+                // "It began to pass. While passing, it touched it".
+                last.begun &= !matches!(act, Act::Pass | Act::Enter) || fact.begun;
                 last.manner = fact.manner.or(last.manner);
                 // The last word on it is that it was done.
                 if fact.done {
@@ -57,12 +65,62 @@ pub(super) fn acts(reading: &Reading<'_>, actor: Actor) -> Vec<ActFact> {
             }
             _ => all.push(fact),
         }
+        if let Some(entry) = entry.filter(|entry| !entry.before) {
+            enters(&mut all, &entry.fact);
+        }
     }
     if reading.contacts.partner == Some(actor) {
         with_contact(reading, actor, &mut all);
     }
     told_ahead(reading, &mut all);
     all
+}
+
+/// "It began to maneuver around the truck": it was about to pass it.
+fn begins_to_pass(reading: &Reading<'_>, actor: Actor, frame: &Frame, act: Act) -> bool {
+    actor == SUBJECT && act == Act::Pass && begins(reading, frame)
+}
+
+/// Adds that somebody came into the intersection, once; the last word on it is that it did.
+fn enters(all: &mut Vec<ActFact>, fact: &ActFact) {
+    match all.iter_mut().rfind(|known| known.act == Act::Enter) {
+        Some(known) if known.begun && !fact.begun => *known = fact.clone(),
+        Some(_) => {}
+        None => all.push(fact.clone()),
+    }
+}
+
+/// "It stopped at a red light alongside a van. Both set off": the van had stood there too.
+pub(super) fn stood_alongside(reading: &Reading<'_>, actor: Actor, mut acts: Vec<ActFact>) -> Vec<ActFact> {
+    let known = &reading.story.world.actors[actor];
+    let at_its_side = |(relation, to): &(Relation, Option<Actor>)| {
+        matches!(relation, Relation::Beside | Relation::Left | Relation::Right) && *to == Some(actor)
+    };
+    let stands = |frame: &Frame| matches!(frame.act(), Some(Act::Stop | Act::Hold)) && frame.happened();
+    let stood = reading.before(SUBJECT).find(|(_, frame)| stands(frame) && frame.relations.iter().any(at_its_side));
+    let Some((number, frame)) = stood.filter(|_| known.kind.is_some_and(Kind::is_vehicle) && !known.several) else {
+        return acts;
+    };
+    let own = |fact: &ActFact| {
+        let told = &reading.story.frames[fact.step as usize];
+        fact.step as usize <= number || stands(told) || told.sentence == frame.sentence
+    };
+    if acts.is_empty() || acts.iter().any(own) {
+        return acts;
+    }
+    let fact = ActFact {
+        act: Act::Hold,
+        side: None,
+        step: number as u32,
+        after_contact: false,
+        begun: false,
+        done: false,
+        after_other: None,
+        manner: None,
+        source: reading.of(frame),
+    };
+    acts.insert(0, fact);
+    acts
 }
 
 /// "It passed the van and went into the intersection. While passing it, it touched its mirror": of an intersection that it was only on its
@@ -73,40 +131,6 @@ fn told_ahead(reading: &Reading<'_>, all: &mut [ActFact]) {
         if all[at].act == Act::Enter && again {
             all[at].source = reading.of(&reading.story.frames[all[at].step as usize]);
         }
-    }
-}
-
-/// Words that stand before "intersection" in its name.
-const OF_INTERSECTION: [&str; 18] = [
-    "a",
-    "an",
-    "the",
-    "this",
-    "that",
-    "same",
-    "said",
-    "four",
-    "4",
-    "three",
-    "way",
-    "t",
-    "stop",
-    "sign",
-    "signalized",
-    "signal",
-    "controlled",
-    "of",
-];
-
-/// The token behind the words of an act: of who goes into or through an intersection, up to that word.
-fn reach(reading: &Reading<'_>, frame: &Frame, act: Act) -> usize {
-    let end = reading.story.sentences[frame.sentence].end;
-    let word = |at: usize| reading.story.tokens[at].text.as_str();
-    let behind =
-        (frame.end..end).find(|&at| !OF_INTERSECTION.contains(&word(at)) && !matches!(word(at), "into" | "through"));
-    match behind {
-        Some(at) if act == Act::Enter && matches!(word(at), "intersection" | "junction") => at + 1,
-        _ => frame.end,
     }
 }
 
@@ -276,6 +300,11 @@ fn act_of(reading: &Reading<'_>, number: usize, frame: &Frame, pushed: bool) -> 
     // "proceeded forward out of a stall".
     let comes_out = matches!(frame.out_of, Some(Spot::Stall | Spot::Driveway | Spot::Curb));
     let words = reading.text[reading.story.tokens[frame.first].start..].to_lowercase();
+    // "exited the intersection": of others it is where they had been.
+    let exits = act == Act::Enter && reading.story.tokens[frame.first].text.starts_with("exit");
+    if exits && frame.who != Some(SUBJECT) {
+        return None;
+    }
     Some(match act {
         // "A dog came out from between two cars": no vehicle that leaves a place of its own.
         Act::PullOut if frame.who.is_some_and(|who| is_animal(reading, who)) => Act::Enter,

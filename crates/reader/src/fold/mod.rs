@@ -5,6 +5,7 @@ mod acts;
 mod contact;
 mod controls;
 mod driver;
+mod entry;
 mod fallback;
 mod flashback;
 mod movement;
@@ -416,7 +417,7 @@ fn others(reading: &Reading<'_>) -> Vec<Other> {
             kind: reading.told(kind, first, end),
             place: whereabouts::place_of(reading, actor),
             several: known.several,
-            acts,
+            acts: acts::stood_alongside(reading, actor, acts),
             touched_partner,
         });
     }

@@ -12,7 +12,7 @@ use recrash_model::account::Act;
 
 type Rule = fn(&Parser<'_>, &Spoken<'_>, &Carry) -> Option<Sense>;
 
-const SENSES: [Rule; 15] = [
+const SENSES: [Rule; 16] = [
     stands_backed_up,
     remains_so,
     is_ridden,
@@ -28,6 +28,7 @@ const SENSES: [Rule; 15] = [
     gets_in,
     stands_open,
     swings_over,
+    moves_itself,
 ];
 
 impl Parser<'_> {
@@ -39,6 +40,14 @@ impl Parser<'_> {
         }
         verb.sense
     }
+}
+
+/// "moved forward into the intersection": it went there, and pushed nobody.
+fn moves_itself(parser: &Parser<'_>, verb: &Spoken<'_>, carry: &Carry) -> Option<Sense> {
+    let words: Vec<&str> =
+        parser.tokens[verb.placed().first..].iter().take(5).map(|token| token.text.as_str()).collect();
+    let road = matches!(words.get(1..), Some(["forward", "into", "the" | "an", "intersection" | "junction"]));
+    (verb.sense == Sense::Push && road && !carry.be).then_some(Sense::Act(Act::Follow))
 }
 
 /// "traffic was backed up" stands.

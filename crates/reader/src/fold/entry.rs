@@ -1,0 +1,175 @@
+//! Who goes into or through an intersection, where the verb itself says another thing: "proceeded straight through the intersection",
+//! "halfway through the intersection it began to slow".
+
+use super::Reading;
+use super::across::begins;
+use super::acts::doer;
+use crate::frame::Frame;
+use crate::lexicon::Sense;
+use recrash_model::account::{Act, ActFact};
+
+/// So many words stand between a verb and the intersection into which it leads, at most: "proceeded a short distance forward into the". [tokens]
+const BETWEEN: usize = 10;
+
+/// Behind these words it is told of something else, or of what is yet to come.
+const ENDS: [&str; 16] = [
+    ",",
+    ";",
+    "and",
+    "or",
+    "but",
+    "when",
+    "while",
+    "as",
+    "before",
+    "prior",
+    "for",
+    "toward",
+    "towards",
+    "preparing",
+    "waiting",
+    "behind",
+];
+
+/// Words that stand before "intersection" in its name.
+const OF_INTERSECTION: [&str; 25] = [
+    "a",
+    "an",
+    "the",
+    "this",
+    "that",
+    "same",
+    "said",
+    "four",
+    "4",
+    "three",
+    "way",
+    "t",
+    "stop",
+    "sign",
+    "signalized",
+    "signal",
+    "controlled",
+    "of",
+    "green",
+    "yellow",
+    "red",
+    "light",
+    "traffic",
+    "at",
+    "in",
+];
+
+/// Words that tell how far into an intersection.
+const HOW_FAR: [&str; 8] = ["halfway", "midway", "partway", "partially", "partly", "almost", "nearly", "mostly"];
+
+/// An entry that is told with what somebody else does, or with another act of its own.
+pub(super) struct Entry {
+    pub(super) fact: ActFact,
+    /// It came before that act: "halfway through the intersection it began to slow".
+    pub(super) before: bool,
+}
+
+/// The entry that stands beside an act, where its words tell one.
+pub(super) fn beside(reading: &Reading<'_>, frame: &Frame, fact: &ActFact) -> Option<Entry> {
+    if matches!(fact.act, Act::Enter | Act::Cross | Act::Turn | Act::UTurn | Act::Pushed) || fact.after_contact {
+        return None;
+    }
+    let entry = |first: usize, end: usize, before: bool, begun: bool| Entry {
+        fact: ActFact {
+            act: Act::Enter,
+            side: None,
+            begun,
+            done: false,
+            manner: None,
+            source: reading.words(first, end),
+            ..fact.clone()
+        },
+        before,
+    };
+    if let Some((first, end)) = already_inside(reading, frame) {
+        return Some(entry(first, end, true, false));
+    }
+    let stands = matches!(fact.act, Act::Stop | Act::Hold);
+    let moves = matches!(fact.act, Act::Follow | Act::SetOff | Act::Accelerate | Act::Slow);
+    let end = behind_verb(reading, frame, stands).filter(|_| stands || moves)?;
+    Some(entry(frame.first, end, stands, moves && is_begun(reading, frame)))
+}
+
+/// "traveling eastbound on Oak Street through the intersection", "stopped partway into the intersection": the token behind it.
+fn behind_verb(reading: &Reading<'_>, frame: &Frame, stands: bool) -> Option<usize> {
+    let tokens = &reading.story.tokens;
+    let word = |at: usize| tokens[at].text.as_str();
+    let mut end = reading.story.sentences[frame.sentence].end.min(frame.end + BETWEEN);
+    // The next verb is of another clause.
+    let next = reading.story.frames.iter().map(|other| other.first).filter(|first| *first >= frame.end).min();
+    end = end.min(next.unwrap_or(end));
+    let into = (frame.first + 1..end)
+        .take_while(|&at| !ENDS.contains(&word(at)))
+        .find(|&at| matches!(word(at), "into" | "through") && (!stands || HOW_FAR.contains(&word(at - 1))))?;
+    intersection(reading, into + 1, frame.sentence)
+}
+
+/// "(halfway) through the intersection", "while in the intersection", at the head of the sentence of which this is the first verb.
+fn already_inside(reading: &Reading<'_>, frame: &Frame) -> Option<(usize, usize)> {
+    let tokens = &reading.story.tokens;
+    let word = |at: usize| tokens[at].text.as_str();
+    let first = reading.story.sentences[frame.sentence].first;
+    let own = |other: &&Frame| other.sentence == frame.sentence && other.first < frame.first;
+    if reading.story.frames.iter().any(|other| own(&&other)) {
+        return None;
+    }
+    let at = (first..frame.first).find(|&at| match word(at) {
+        "into" | "through" => at > first && HOW_FAR.contains(&word(at - 1)),
+        "in" | "inside" | "within" => at > first && matches!(word(at - 1), "while" | "still" | "already"),
+        _ => false,
+    })?;
+    Some((at - 1, intersection(reading, at + 1, frame.sentence)?))
+}
+
+/// The token behind "the intersection", where that begins here.
+fn intersection(reading: &Reading<'_>, from: usize, sentence: usize) -> Option<usize> {
+    let word = |at: usize| reading.story.tokens[at].text.as_str();
+    let end = reading.story.sentences[sentence].end;
+    let at = (from..end).find(|&at| !OF_INTERSECTION.contains(&word(at)))?;
+    matches!(word(at), "intersection" | "junction").then_some(at + 1)
+}
+
+/// "was parked in-lane", "stopped in the travel lane": the token behind it.
+fn in_a_lane(reading: &Reading<'_>, frame: &Frame) -> Option<usize> {
+    let end = reading.story.sentences[frame.sentence].end;
+    let word = |at: usize| if at < end { reading.story.tokens[at].text.as_str() } else { "" };
+    if word(frame.end) != "in" {
+        return None;
+    }
+    let article = usize::from(matches!(word(frame.end + 1), "the" | "a" | "its" | "an"));
+    let kind = usize::from(matches!(word(frame.end + 1 + article), "travel" | "driving" | "traffic"));
+    let lane = frame.end + 1 + article + kind;
+    (word(lane) == "lane").then_some(lane + 1)
+}
+
+/// The token behind the words of an act: of who goes into or through an intersection, or stands in a lane, up to that word.
+pub(super) fn reach(reading: &Reading<'_>, frame: &Frame, act: Act) -> usize {
+    if matches!(act, Act::Hold | Act::Stop | Act::Park) {
+        return in_a_lane(reading, frame).unwrap_or(frame.end);
+    }
+    let word = |at: usize| reading.story.tokens[at].text.as_str();
+    let end = reading.story.sentences[frame.sentence].end;
+    let from = frame.end + usize::from(frame.end < end && matches!(word(frame.end), "into" | "through"));
+    let behind = if act == Act::Enter { intersection(reading, from, frame.sentence) } else { None };
+    behind.unwrap_or(frame.end)
+}
+
+/// "began to proceed through the intersection", and nothing that it did there.
+fn is_begun(reading: &Reading<'_>, frame: &Frame) -> bool {
+    let who = doer(reading, frame);
+    let goes_on = |later: &Frame| {
+        later.sentence == frame.sentence
+            && later.first > frame.first
+            && doer(reading, later) == who
+            && later.happened()
+            && later.act().is_some()
+            && later.sense != Sense::Yield
+    };
+    begins(reading, frame) && !reading.story.frames.iter().any(goes_on)
+}
