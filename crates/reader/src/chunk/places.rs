@@ -12,8 +12,13 @@ const RIGHT: &[&str] = &["right", "rightmost", "outside", "slow"];
 const TURN: &[&str] = &["turn", "turning"];
 
 /// What the words before "lane" make of it: the first whose words are all there.
-const LANES: [(&[&[&str]], LaneWord); 11] = [
+const LANES: [(&[&[&str]], LaneWord); 15] = [
     (&[&["bike", "bicycle"]], LaneWord::Bike),
+    // "the rightmost bus and turn lane": who else may use it says where it is.
+    (&[&["bus"], TURN, LEFT], LaneWord::LeftTurn),
+    (&[&["bus"], TURN, RIGHT], LaneWord::RightTurn),
+    (&[&["bus"], &["leftmost"]], LaneWord::Left),
+    (&[&["bus"], &["rightmost"]], LaneWord::Right),
     (&[&["bus"]], LaneWord::Bus),
     (&[&["opposing", "opposite", "oncoming"]], LaneWord::Opposing),
     (&[&["parking", "curb"]], LaneWord::Curb),
@@ -36,6 +41,32 @@ fn in_lane_names(word: &str) -> bool {
         || matches!(word, "opposing" | "opposite" | "oncoming" | "designated" | "emergency" | "slow" | "fast")
         || matches!(word, "passing" | "number" | "second" | "of" | "and" | "two" | "three" | "four")
         || matches!(word, "shared" | "way")
+}
+
+/// A small number.
+fn count(word: &str) -> Option<u8> {
+    match word {
+        "one" => Some(1),
+        "two" => Some(2),
+        "three" => Some(3),
+        "four" => Some(4),
+        "five" => Some(5),
+        _ => word.parse().ok().filter(|number| (1..=MOST_LANES).contains(number)),
+    }
+}
+
+/// A road has no more lanes in one direction.
+const MOST_LANES: u8 = 6;
+
+/// The lane with this number from the left, of so many where that is told.
+const fn of_so_many(number: u8, many: Option<u8>) -> Option<LaneWord> {
+    match (number, many) {
+        (1, _) => Some(LaneWord::Left),
+        (_, Some(many)) if number == many => Some(LaneWord::Right),
+        (_, Some(many)) if number < many => Some(LaneWord::Center),
+        // Of how many it is the second is not told.
+        _ => None,
+    }
 }
 
 impl Chunker<'_> {
@@ -135,6 +166,9 @@ impl Chunker<'_> {
         if let Some(length) = self.counted_lane(at) {
             return Some((LaneWord::Center, length));
         }
+        if let Some(numbered) = self.numbered_lane(at).or_else(|| self.ordinal_lane(at)) {
+            return Some(numbered);
+        }
         let two_way = word == "two" && self.text(at + 1) == "way";
         if !in_lane_names(word) || !two_way && matches!(word, "and" | "of" | "two" | "three" | "four" | "way") {
             return None;
@@ -174,15 +208,57 @@ impl Chunker<'_> {
         })
     }
 
+    /// "the number 2 lane (of 3)", "the #1 lane": lanes are counted from the left.
+    fn numbered_lane(&self, at: usize) -> Option<(LaneWord, usize)> {
+        let (number, from) = match self.text(at).strip_prefix('#') {
+            Some(digits) if !digits.is_empty() => (count(digits)?, at + 1),
+            _ if self.text(at) == "number" => (count(self.text(at + 1))?, at + 2),
+            _ => return None,
+        };
+        let lane = (from..from + 3).find(|&at| self.text(at) == "lane")?;
+        // "partially in the number 2 lane": and in another one.
+        let partly = at >= 3 && matches!(self.text(at - 3), "partially" | "partly");
+        if partly || !(from..lane).all(|at| in_lane_names(self.text(at)) || self.compass(at).is_some()) {
+            return None;
+        }
+        if self.text(lane + 1) == "("
+            && let Some((_, named)) =
+                LANES.iter().find(|(names, _)| names.iter().all(|words| words.contains(&self.text(lane + 2))))
+        {
+            return Some((*named, lane + 3 - at));
+        }
+        let of = lane + 1 + usize::from(self.text(lane + 1) == "(");
+        let many = if self.text(of) == "of" { count(self.text(of + 1)) } else { None };
+        let end = if many.is_some() { of + 2 } else { lane + 1 };
+        Some((of_so_many(number, many)?, end - at))
+    }
+
+    /// "the second lane on a four-lane section": in the middle, where more are told than that.
+    fn ordinal_lane(&self, at: usize) -> Option<(LaneWord, usize)> {
+        let number = match self.text(at) {
+            "second" | "2nd" => 2,
+            "third" | "3rd" => 3,
+            _ => return None,
+        };
+        let lane = at + 1 + usize::from(matches!(self.text(at + 1), "travel" | "through" | "traffic" | "driving"));
+        let on = matches!(self.text(lane + 1), "of" | "on" | "in") && matches!(self.text(lane + 2), "a" | "an" | "the");
+        let many = count(self.text(lane + 3)).filter(|_| on && matches!(self.text(lane + 4), "lane" | "lanes"))?;
+        // From which side it is counted is not told.
+        let between = self.text(lane) == "lane" && number < many;
+        between.then_some((LaneWord::Center, lane + 1 - at))
+    }
+
     /// A place beside the road, and its tokens: "a parking stall", "an alley".
     pub(super) fn spot(&self, at: usize) -> Option<(Spot, usize)> {
         let (one, two) = (self.text(at), self.text(at + 1));
         Some(match (one, two) {
             (
-                "parking" | "angled" | "perpendicular",
+                "parking" | "angled" | "perpendicular" | "diagonal",
                 "space" | "spot" | "stall" | "spaces" | "spots" | "stalls" | "position",
             ) => (Spot::Stall, 2),
-            ("angled" | "perpendicular", "parking") if matches!(self.text(at + 2), "space" | "spot" | "stall") => {
+            ("angled" | "perpendicular" | "diagonal", "parking")
+                if matches!(self.text(at + 2), "space" | "spot" | "stall") =>
+            {
                 (Spot::Stall, 3)
             }
             ("parking", "lot" | "garage" | "area" | "structure") => (Spot::Driveway, 2),
@@ -199,6 +275,9 @@ impl Chunker<'_> {
             ("car", "park") | ("service" | "filling", "station") => (Spot::Driveway, 2),
             ("minor" | "intersecting" | "crossing", "street" | "road") => (Spot::SideStreet, 2),
             ("gas", "station") | ("driveway", "exit") => (Spot::Driveway, 2),
+            ("shopping" | "strip" | "apartment", "center" | "mall" | "plaza" | "complex") | ("car", "wash") => {
+                (Spot::Driveway, 2)
+            }
             ("driveway" | "garage" | "alley" | "alleyway" | "lot", _) => (Spot::Driveway, 1),
             ("sidewalk", _) => (Spot::Sidewalk, 1),
             ("side" | "cross", "street" | "road") => (Spot::SideStreet, 2),

@@ -11,7 +11,8 @@ use crate::frame::Frame;
 use crate::lexicon::Sense;
 use crate::world::{Actor, SUBJECT};
 use recrash_model::account::{
-    Account, Act, Compass, ContactState, Fact, Kind, KindGroup, LeftRight, Origin, Party, Speed, SpeedMeaning, told,
+    Account, Act, Compass, ContactState, Fact, Kind, KindGroup, LaneWord, LeftRight, Origin, Party, Speed,
+    SpeedMeaning, told,
 };
 use recrash_model::kinds::PartnerKind;
 use recrash_model::record::Coded;
@@ -46,6 +47,7 @@ pub(crate) fn party(reading: &Reading<'_>, actor: Actor) -> Party {
         lane: known
             .lane
             .filter(|(_, first, _)| before(*first))
+            .or_else(|| turn_lane_to_come(reading, actor))
             .map(|(lane, first, end)| reading.told(lane, first, end)),
         speeds: speeds(reading, actor),
         zones: zones(reading, actor),
@@ -56,6 +58,25 @@ pub(crate) fn party(reading: &Reading<'_>, actor: Actor) -> Party {
     }
     party
 }
+
+/// "passed the AV on the left to enter the left turn lane": the lane in which it is to be.
+fn turn_lane_to_come(reading: &Reading<'_>, actor: Actor) -> Option<(LaneWord, usize, usize)> {
+    let frames = &reading.story.frames;
+    let (number, pass) = reading.before(actor).find(|(_, frame)| frame.act() == Some(Act::Pass) && !frame.negated)?;
+    let mut behind = frames[number + 1..].iter().take_while(|frame| frame.sentence == pass.sentence);
+    let entered = behind.find(|frame| frame.who == Some(actor) && frame.act() == Some(Act::Enter))?;
+    let end = reading.story.sentences[entered.sentence].end;
+    let word = |at: usize| reading.story.tokens[at].text.as_str();
+    let lane = (entered.first + 1..end).take(LANE_WITHIN).find(|&at| word(at) == "lane")?;
+    let value = match entered.side? {
+        LeftRight::Left => LaneWord::LeftTurn,
+        LeftRight::Right => LaneWord::RightTurn,
+    };
+    matches!(word(lane - 1), "turn" | "turning").then_some((value, entered.first, lane + 1))
+}
+
+/// The name of a lane that is entered is no longer, with its article. [tokens]
+const LANE_WITHIN: usize = 7;
 
 /// "The left side of the trailer made contact": whoever it was called before drew one.
 fn with_trailer(reading: &Reading<'_>, actor: Actor, kind: Kind) -> Kind {

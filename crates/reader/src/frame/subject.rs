@@ -191,6 +191,17 @@ impl Parser<'_> {
         {
             return Some(Mention { actor, piece: None, person: None, end: placed.first });
         }
+        // "stopped in a queue of traffic facing west": who stands in it does.
+        if let (Sense::Face, Form::Ing, false, Some(frame), Some(last)) =
+            (sense, form, carry.be, carry.frame, &carry.last)
+            && matches!(self.frames[frame].act(), Some(Act::Hold | Act::Stop))
+            && carry.governed
+            && last.end == placed.first
+            && self.is_in_queue(self.frames[frame].end, last.end)
+            && let Some(actor) = self.frames[frame].who
+        {
+            return Some(Mention { actor, piece: None, person: None, end: placed.first });
+        }
         // "was struck by a van, traveling east": the van.
         if let (true, Form::Ing, Some(last), Some(frame)) = (carry.after_comma, form, &carry.last, carry.frame)
             && self.frames[frame].passive
@@ -264,6 +275,12 @@ impl Parser<'_> {
             matches!(pair[0].chunk, Chunk::Joint(Joint::And)) && matches!(pair[1].chunk, Chunk::Verb(..) | Chunk::Word)
         });
         (of_other && !row).then(|| described.clone())
+    }
+
+    /// "in a queue of traffic", "in a line of cars".
+    fn is_in_queue(&self, first: usize, end: usize) -> bool {
+        let words: Vec<&str> = self.tokens[first.min(end)..end].iter().map(|token| token.text.as_str()).collect();
+        matches!(words.as_slice(), ["in", "a" | "the", "queue" | "line", "of", ..])
     }
 
     /// Whether the noun named last stands right before.
