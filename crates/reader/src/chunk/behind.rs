@@ -80,6 +80,8 @@ impl Chunker<'_> {
             && (owner.subject || owner.kind.is_some_and(can_own))
             && owner.occupant.is_none()
         {
+            // "the driver of a northbound van".
+            noun.compass = noun.compass.or(owner.compass);
             noun.owner = Some(Box::new(owner));
             return behind + 1 + length;
         }

@@ -204,7 +204,12 @@ pub(super) fn reasons(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<StandReas
             Sense::Act(Act::Stop | Act::Slow | Act::Hold) => frame.object,
             _ => None,
         };
-        if let Some(lead) = behind.or(yields_to)
+        // Whom it met is in front of it only where that is told.
+        let met = |lead: &Actor| {
+            let ahead = |(relation, _): &(Relation, usize)| *relation == Relation::Ahead;
+            Some(*lead) == reading.contacts.partner && !reading.story.world.actors[*lead].relations.iter().any(ahead)
+        };
+        if let Some(lead) = behind.or(yields_to.filter(|lead| !met(lead)))
             && reading.story.world.actors[lead].kind.is_some_and(Kind::is_vehicle)
         {
             let ahead = behind.is_some() || stands_still(reading, lead, number);

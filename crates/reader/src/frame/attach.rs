@@ -202,7 +202,7 @@ impl Parser<'_> {
         let located = matches!(self.tokens[placed.first].text.as_str(), "on" | "from" | "in");
         let stays = |act: Option<Act>| match act {
             Some(Act::Park | Act::PullOver) => governs,
-            Some(Act::PullOut | Act::LaneChange | Act::Drift | Act::Swerve | Act::Turn) => {
+            Some(Act::PullOut | Act::LaneChange | Act::Drift | Act::Swerve | Act::Turn | Act::UTurn) => {
                 located || (act == Some(Act::PullOut) && governs)
             }
             _ => false,
@@ -456,6 +456,8 @@ impl Parser<'_> {
             Some("from") => moves,
             Some("of") => moves && says_out,
             Some("into" | "onto" | "to" | "in" | "at" | "on" | "near" | "through" | "towards" | "toward") => false,
+            // "departing a shopping center".
+            _ if taken.act() == Some(Act::SetOff) => self.tokens[taken.first].text.starts_with("depart"),
             _ => matches!(taken.act(), Some(Act::PullOut | Act::Reverse)),
         };
         if leaves && taken.happened() {

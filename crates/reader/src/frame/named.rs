@@ -150,7 +150,7 @@ impl Parser<'_> {
         {
             return false;
         }
-        let struck = self.waits_struck(all, at, carry);
+        let struck = self.waits_struck(all, at, carry).or_else(|| self.closes(all, at));
         let actor = struck.unwrap_or_else(|| self.not_itself(self.its(carry), carry));
         let mention = Mention { actor, piece: None, person: None, end: all[at].end };
         self.mention(mention, &all[at], carry, chunk(1));

@@ -147,7 +147,7 @@ impl Parser<'_> {
             Chunk::Piece(piece) => self.piece(piece, all, at, carry),
             Chunk::Pronoun => self.pronoun(all, at, carry),
             Chunk::Relative => self.relative(all, at, carry),
-            Chunk::Comma => self.comma(next, carry),
+            Chunk::Comma => self.comma(self.behind_small_words(all, at), carry),
             Chunk::Word => self.word(all, at, carry),
             other => {
                 match other {
@@ -185,6 +185,16 @@ impl Parser<'_> {
         if !stands {
             (carry.after_comma, carry.filled) = (false, false);
         }
+    }
+
+    /// What stands behind a comma, past "then" and the like: "the van, going straight as the road bent, then struck it".
+    fn behind_small_words<'c>(&self, all: &'c [Placed], at: usize) -> Option<&'c Chunk> {
+        const SMALL: [&str; 6] = ["then", "also", "subsequently", "eventually", "thereafter", "finally"];
+        let small = |placed: &&Placed| {
+            matches!(placed.chunk, Chunk::Word | Chunk::Joint(Joint::And))
+                && SMALL.contains(&self.tokens[placed.first].text.as_str())
+        };
+        all[at + 1..].iter().find(|placed| !small(placed)).map(|placed| &placed.chunk)
     }
 
     fn not(&self, placed: &Placed, carry: &mut Carry) {

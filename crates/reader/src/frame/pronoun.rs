@@ -5,7 +5,7 @@ use super::row::{acts, transitive};
 use crate::chunk::{Chunk, Joint, Placed};
 use crate::lexicon::Sense;
 use crate::world::{Actor, SUBJECT};
-use recrash_model::account::Act;
+use recrash_model::account::{Act, Kind};
 
 impl Parser<'_> {
     /// Who is meant by `it` and `its`.
@@ -58,7 +58,51 @@ impl Parser<'_> {
         };
         let last = self.frames.last().filter(|frame| frame.sentence == self.sentence).filter(meets)?;
         let struck = !last.passive && last.object == Some(SUBJECT) && last.who != Some(SUBJECT);
-        (carry.fresh && carry.joint == Some(Joint::While) && stands && struck).then_some(SUBJECT)
+        // "A truck backed into the AV as it went by".
+        let passes = all[at + 1..].first().is_some_and(|placed| {
+            matches!(placed.chunk, Chunk::Verb(Sense::Act(Act::Pass), _))
+                && !matches!(all.get(at + 2).map(|next| &next.chunk), Some(Chunk::Noun(_) | Chunk::Piece(_)))
+        });
+        let from_a_stand = passes && {
+            matches!(last.sense, Sense::ReverseContact | Sense::OpenDoorInto)
+                || self.frames.iter().any(|frame| {
+                    frame.sentence == self.sentence
+                        && frame.who == last.who
+                        && matches!(frame.act(), Some(Act::PullOut | Act::Reverse | Act::OpenDoor))
+                })
+        };
+        let waits = stands || from_a_stand;
+        (carry.fresh && carry.joint == Some(Joint::While) && waits && struck).then_some(SUBJECT)
+    }
+
+    /// "approached a gate as it had started to close": what closes or comes down is the gate that was named before.
+    pub(super) fn closes(&self, all: &[Placed], at: usize) -> Option<Actor> {
+        if self.tokens[all[at].first].text != "it" {
+            return None;
+        }
+        // "as it had begun to close".
+        let small = |placed: &&Placed| {
+            matches!(placed.chunk, Chunk::Word | Chunk::Be | Chunk::Preposition("to") | Chunk::Verb(Sense::Other, _))
+        };
+        let verb = at + 1 + all[at + 1..].iter().take_while(small).count();
+        let closes = all.get(verb).filter(|placed| matches!(placed.chunk, Chunk::Verb(Sense::Act(Act::Fall), _)))?;
+        let words = &self.tokens[closes.first..closes.end];
+        let swings = |token: &crate::token::Token| {
+            ["clos", "lower", "descend", "swing", "swung", "coming", "came"]
+                .iter()
+                .any(|stem| token.text.starts_with(stem))
+        };
+        // "it closed the distance".
+        let takes = matches!(all.get(verb + 1).map(|placed| &placed.chunk), Some(Chunk::Noun(_) | Chunk::Piece(_)));
+        let another = self
+            .tokens
+            .get(closes.end)
+            .is_some_and(|next| matches!(next.text.as_str(), "the" | "its" | "a" | "in" | "on"));
+        if takes || another || !words.iter().any(swings) {
+            return None;
+        }
+        let gate = |actor: &Actor| matches!(self.world.actors[*actor].kind, Some(Kind::Gate | Kind::Barrier));
+        (1..self.world.actors.len()).filter(gate).max_by_key(|actor| self.world.actors[*actor].last)
     }
 
     /// "A truck struck a parked truck, and as a result the truck touched it": of two of a kind the one that was struck.

@@ -297,7 +297,9 @@ impl World {
             let only = kind == Kind::Vehicle || kind == Kind::PassengerCar && self.plain && self.actors.len() == 1;
             // "Close to the parked cars": a group is none of the two.
             let group = noun.several && sought.has(Adjective::Parked);
-            if known && only && hint.is_none() && noun.names.is_empty() && !group {
+            // "The lead vehicle", "the oncoming vehicle": seen from it, and so another one.
+            let seen = relation_of(noun).is_some();
+            if known && only && hint.is_none() && noun.names.is_empty() && !group && !seen {
                 self.plain |= self.actors[SUBJECT].mentions == 0;
                 return Some(Meant::Known(SUBJECT));
             }

@@ -158,7 +158,9 @@ impl World {
         {
             known.place(relation, self.sentence);
         }
-        if let (Some(compass), true, None) = (noun.compass, noun.occupant.is_none(), known.heading) {
+        if let (Some(compass), true, None) =
+            (noun.compass, noun.occupant.is_none() || noun.owner.is_some(), known.heading)
+        {
             known.heading = Some((compass, tokens.0, tokens.1));
         }
         actor

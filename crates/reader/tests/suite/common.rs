@@ -124,6 +124,10 @@ pub fn facts(account: &Account) -> BTreeMap<&'static str, String> {
         ("driver", name(&account.driver)),
         ("door", name(&account.door)),
         ("left", if account.partner_left.is_some() { "yes".to_owned() } else { "no".to_owned() }),
+        (
+            "ahead",
+            account.ahead.as_ref().map(|ahead| if ahead.value { "yes" } else { "no" }.to_owned()).unwrap_or_default(),
+        ),
         ("place", name(&account.place.kind)),
         ("features", features.join(" ")),
         ("feature", feature.map(|feature| coded(&feature)).unwrap_or_default()),

@@ -92,9 +92,22 @@ pub(crate) fn ahead(reading: &Reading<'_>, account: &Account) -> Option<Fact<boo
         let near = |frame: &Frame| frame.sense == Sense::Approach && frame.happened() && frame.object == Some(actor);
         reading.before(SUBJECT).find(|(_, frame)| near(frame)).map(|(number, _)| (number, Relation::Ahead))
     };
-    let (number, relation) = told_on_its_line.or_else(cuts_in).or_else(neared)?;
+    let of_itself = || in_its_own_words(reading, actor, leaves);
+    let (number, relation) = told_on_its_line.or_else(of_itself).or_else(cuts_in).or_else(neared)?;
     let (first, end) = reading.window(number);
     Some(Fact { value: relation == Relation::Ahead, source: reading.words(first, end) })
+}
+
+/// "A van in the left lane and in front of the AV began to change lanes": told of whom, and not with what it did. With the number of the
+/// frame in which it is told, or the first behind it.
+fn in_its_own_words(reading: &Reading<'_>, actor: Actor, leaves: impl Fn(Act) -> bool) -> Option<(usize, Relation)> {
+    let left = reading.before(actor).find(|(_, frame)| frame.happened() && frame.act().is_some_and(&leaves))?;
+    let (relation, sentence) = reading.story.world.actors[actor].relations.iter().find(|(relation, sentence)| {
+        matches!(relation, Relation::Ahead | Relation::Behind) && *sentence <= left.1.sentence
+    })?;
+    let number =
+        reading.before(actor).find(|(_, frame)| frame.sentence >= *sentence).map_or(left.0, |(number, _)| number);
+    Some((number, *relation))
 }
 
 /// From where the partner came.

@@ -17,8 +17,8 @@ use crate::frame::Frame;
 use crate::lexicon::{Relation, Sense};
 use crate::world::{Actor, SUBJECT};
 use recrash_model::account::{
-    Account, Act, ActFact, Compass, ContactState, Fact, KindGroup, LaneWord, LeftRight, Origin, Party, RoadFeature,
-    Source, told,
+    Account, Act, ActFact, Compass, ContactState, Fact, KindGroup, LaneWord, LeftRight, Origin, Party, PlaceKind,
+    RoadFeature, Source, told,
 };
 use recrash_model::zones::ContactZone as Z;
 
@@ -48,7 +48,7 @@ struct Case<'a> {
 type Told = Option<Fact<Origin>>;
 type Rule = fn(&Case<'_>) -> Told;
 
-const RULES: [Rule; 34] = [
+const RULES: [Rule; 35] = [
     |case| case.thrown_at_the_rear(),
     |case| case.out_of_a_place(),
     |case| case.stood_in_a_stall(),
@@ -60,6 +60,7 @@ const RULES: [Rule; 34] = [
     |case| case.on_a_side_street(),
     |case| case.enters_from_a_road(),
     |case| case.leaves_the_kerb(),
+    |case| case.goes_over_from_the_kerb(),
     |case| case.moves_over_from_behind(),
     |case| case.comes_from_behind(),
     |case| case.is_beside(),
@@ -224,7 +225,7 @@ impl<'a> Case<'a> {
         let drives_out = matches!(frame.out_of, Some(Spot::Driveway));
         let side = self.side.or_else(|| if drives_out { of_road() } else { None }).or(self.touched);
         let origin = match frame.out_of? {
-            Spot::Stall => self.out_of_a_stall(),
+            Spot::Stall => self.out_of_a_stall(number),
             Spot::SideStreet if self.side.is_some() => {
                 self.side.map_or(Origin::Opposite, |side| Origin::Cross { side })
             }
@@ -247,7 +248,7 @@ impl<'a> Case<'a> {
         Some(self.reading.words(first, end))
     }
 
-    fn out_of_a_stall(&self) -> Origin {
+    fn out_of_a_stall(&self, number: usize) -> Origin {
         let side = self.side_or_touched();
         let curb = at_curb(self.reading, self.actor);
         if self.did(Act::Reverse) {
@@ -261,7 +262,7 @@ impl<'a> Case<'a> {
                 return Origin::Behind;
             }
             // Out of a spot at the kerb, backwards: it was ahead of who is touched in front.
-            if square_front(self.account) && (curb || self.ahead) {
+            if square_front(self.account) && (curb || self.ahead && !self.is_across(number)) {
                 return Origin::Ahead;
             }
             // Both go backwards, and meet at their rears.
@@ -273,6 +274,21 @@ impl<'a> Case<'a> {
             return Origin::Behind;
         }
         if curb { Origin::Parked { side } } else { Origin::Stall { side } }
+    }
+
+    /// "reversed out of an angled space", "out of a space in a parking lot": it stood across the way.
+    fn is_across(&self, number: usize) -> bool {
+        let (first, end) = self.reading.window(number);
+        let has = |wanted: &[&str]| {
+            self.reading.story.tokens[first..end].iter().any(|token| wanted.contains(&token.text.as_str()))
+        };
+        let lot = self
+            .account
+            .place
+            .kind
+            .as_ref()
+            .is_some_and(|kind| matches!(kind.value, PlaceKind::ParkingLot | PlaceKind::Garage));
+        !has(&["parallel"]) && (lot || has(&["angled", "perpendicular", "diagonal", "diagonally"]))
     }
 
     /// "was parked in a stall and turned out".
@@ -433,6 +449,28 @@ impl<'a> Case<'a> {
         told_as(Origin::Parked { side: self.side_or_touched() }, self.words_of(Act::PullOut))
     }
 
+    /// "A car that had been stopped along the curb merged into the lane", "a taxi at the right curb made a U-turn".
+    fn goes_over_from_the_kerb(&self) -> Told {
+        let goes = |frame: &Frame| frame.happened() && matches!(frame.act(), Some(Act::LaneChange | Act::UTurn));
+        let (_, frame) = self.frames().find(|(_, frame)| goes(frame))?;
+        let (_, named) = self.reading.story.world.actors[self.actor].kind_tokens?;
+        let sentence = self.reading.story.sentences[frame.sentence];
+        if self.behind_first() || !(sentence.first..=frame.first).contains(&named) {
+            return None;
+        }
+        let words = &self.reading.story.tokens[named..frame.first];
+        let others =
+            self.reading.story.frames.iter().any(|other| {
+                (named..frame.first).contains(&other.first) && other.who.is_some_and(|who| who != self.actor)
+            });
+        let curb = words.iter().any(|token| matches!(token.text.as_str(), "curb" | "curbside"));
+        let drove = words.iter().any(|token| matches!(token.text.as_str(), "traveling" | "driving" | "passing"));
+        if others || drove || !curb {
+            return None;
+        }
+        told_as(Origin::Parked { side: self.side_or_touched() }, self.words_of(frame.act()?))
+    }
+
     /// The one side that stands in the words of a frame: "from between cars in the leftmost lane".
     fn side_named(&self, number: usize) -> Option<LeftRight> {
         let (first, end) = self.reading.window(number);
@@ -560,6 +598,11 @@ impl<'a> Case<'a> {
 
     /// "the oncoming van", "in the opposite direction".
     fn comes_the_other_way(&self) -> Told {
+        // "turned left out of the opposite left-turn lane".
+        let lane = self.partner.lane.as_ref().filter(|lane| lane.value == LaneWord::Opposing && self.did(Act::Turn));
+        if let (Some(lane), None, false) = (lane, self.turn, self.did(Act::Pass) || self.behind_first()) {
+            return told_as(Origin::Opposite, lane.source.clone());
+        }
         if !self.clues.any(Relation::Opposite) || self.did(Act::Pass) {
             return None;
         }
@@ -580,8 +623,25 @@ impl<'a> Case<'a> {
             || ran && self.first_is_side()
             || self.frames().any(|(_, frame)| enters(frame) && sided(frame))
             || self.frames().any(|(_, frame)| frame.sense == Sense::Approach && sided(frame)) && !self.did(Act::Pass)
+            || self.comes_across()
             || on_side_street(self.reading, self.actor);
         if crossing { self.across(side) } else { None }
+    }
+
+    /// "traveling from left to right", "came at a right angle from its left", "coming along the road from the right".
+    fn comes_across(&self) -> bool {
+        let drives = |frame: &Frame| frame.happened() && frame.act() == Some(Act::Follow) && !frame.is_contact();
+        let goes_over = self.moved_over() || self.did(Act::Pass) || self.did(Act::Turn) || self.parked;
+        !goes_over
+            && self.frames().filter(|(_, frame)| drives(frame)).any(|(number, _)| {
+                let (first, end) = self.reading.window(number);
+                let words: Vec<&str> =
+                    self.reading.story.tokens[first..end].iter().map(|token| token.text.as_str()).collect();
+                words.windows(2).any(|pair| pair == ["right", "angle"] || pair == ["right", "angles"])
+                    || words.windows(3).any(|row| matches!(row, ["left", "to", "right"] | ["right", "to", "left"]))
+                    || words.contains(&"perpendicular")
+                    || words.windows(3).any(|row| matches!(row, ["road" | "street", "from", _]))
+            })
     }
 
     fn moves_over_from_ahead(&self) -> Told {
