@@ -12,7 +12,7 @@ const RIGHT: &[&str] = &["right", "rightmost", "outside", "slow"];
 const TURN: &[&str] = &["turn", "turning"];
 
 /// What the words before "lane" make of it: the first whose words are all there.
-const LANES: [(&[&[&str]], LaneWord); 15] = [
+const LANES: [(&[&[&str]], LaneWord); 16] = [
     (&[&["bike", "bicycle"]], LaneWord::Bike),
     // "the rightmost bus and turn lane": who else may use it says where it is.
     (&[&["bus"], TURN, LEFT], LaneWord::LeftTurn),
@@ -25,6 +25,8 @@ const LANES: [(&[&[&str]], LaneWord); 15] = [
     (&[&["emergency"]], LaneWord::Shoulder),
     // "the middle shared turn lane", "the center two-way turn lane": between both directions.
     (&[TURN, &["center", "middle", "centre", "shared", "way"]], LaneWord::LeftTurn),
+    // "the leftmost right turn lane".
+    (&[TURN, &["leftmost"], &["right"]], LaneWord::RightTurn),
     (&[TURN, LEFT], LaneWord::LeftTurn),
     (&[TURN, RIGHT], LaneWord::RightTurn),
     (&[LEFT], LaneWord::Left),

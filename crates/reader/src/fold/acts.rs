@@ -31,7 +31,7 @@ pub(super) fn acts(reading: &Reading<'_>, actor: Actor) -> Vec<ActFact> {
             side,
             step: number as u32,
             after_contact,
-            begun: frame.progress == Progress::Tried || begins_to_pass(reading, actor, frame, act),
+            begun: frame.progress == Progress::Tried || begins_to_pass(reading, actor, frame, act, side),
             done: is_done(reading, frame),
             after_other: None,
             manner: manner(reading, number),
@@ -76,9 +76,9 @@ pub(super) fn acts(reading: &Reading<'_>, actor: Actor) -> Vec<ActFact> {
     all
 }
 
-/// "It began to maneuver around the truck": it was about to pass it.
-fn begins_to_pass(reading: &Reading<'_>, actor: Actor, frame: &Frame, act: Act) -> bool {
-    actor == SUBJECT && act == Act::Pass && begins(reading, frame)
+/// "It began to maneuver around the truck": it was about to pass it. Told with a side, it had gone out to that.
+fn begins_to_pass(reading: &Reading<'_>, actor: Actor, frame: &Frame, act: Act, side: Option<LeftRight>) -> bool {
+    actor == SUBJECT && act == Act::Pass && side.is_none() && begins(reading, frame)
 }
 
 /// Adds that somebody came into the intersection, once; the last word on it is that it did.

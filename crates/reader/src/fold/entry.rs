@@ -5,7 +5,6 @@ use super::Reading;
 use super::across::begins;
 use super::acts::doer;
 use crate::frame::Frame;
-use crate::lexicon::Sense;
 use recrash_model::account::{Act, ActFact};
 
 /// So many words stand between a verb and the intersection into which it leads, at most: "proceeded a short distance forward into the". [tokens]
@@ -160,7 +159,7 @@ pub(super) fn reach(reading: &Reading<'_>, frame: &Frame, act: Act) -> usize {
     behind.unwrap_or(frame.end)
 }
 
-/// "began to proceed through the intersection", and nothing that it did there.
+/// "began to proceed through the intersection", and not "and came to a stop" there.
 fn is_begun(reading: &Reading<'_>, frame: &Frame) -> bool {
     let who = doer(reading, frame);
     let goes_on = |later: &Frame| {
@@ -168,8 +167,7 @@ fn is_begun(reading: &Reading<'_>, frame: &Frame) -> bool {
             && later.first > frame.first
             && doer(reading, later) == who
             && later.happened()
-            && later.act().is_some()
-            && later.sense != Sense::Yield
+            && matches!(later.act(), Some(Act::Stop | Act::Hold | Act::Slow))
     };
     begins(reading, frame) && !reading.story.frames.iter().any(goes_on)
 }
