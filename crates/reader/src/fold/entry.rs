@@ -114,8 +114,8 @@ fn already_inside(reading: &Reading<'_>, frame: &Frame) -> Option<(usize, usize)
     let tokens = &reading.story.tokens;
     let word = |at: usize| tokens[at].text.as_str();
     let first = reading.story.sentences[frame.sentence].first;
-    let own = |other: &&Frame| other.sentence == frame.sentence && other.first < frame.first;
-    if reading.story.frames.iter().any(|other| own(&&other)) {
+    let own = |other: &Frame| other.sentence == frame.sentence && other.first < frame.first;
+    if reading.story.frames.iter().any(own) {
         return None;
     }
     let at = (first..frame.first).find(|&at| match word(at) {
