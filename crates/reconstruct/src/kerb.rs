@@ -81,7 +81,7 @@ impl Told {
         let boards = self.reasons.contains(&StandReason::PickupDropoff) && !told.at_kerb;
         let passes = self.cp.lane == Some(LaneWord::Opposing) || boards && self.cp.movement == Some(Movement::Passing);
         let passed = self.origin == Origin::Behind && passes && self.cp.state != ContactState::Reversing;
-        side.lane.is_some_and(|lane| lane != LaneWord::Curb) || told.double || of_ego && passed
+        side.lane.is_some_and(|lane| lane != LaneWord::Curb) || told.in_lane || of_ego && passed
     }
 
     /// Whether one that stands is told to do so beside the lanes of a street: parked, or at the kerb.

@@ -51,8 +51,8 @@ pub(crate) struct Standing {
     pub(crate) counted: Option<Counted>,
     /// It stands at the kerb: "was stopped at the curb".
     pub(crate) at_kerb: bool,
-    /// It is parked in a lane: "double parked".
-    pub(crate) double: bool,
+    /// It is parked in a lane: "double parked", "parked in-lane".
+    pub(crate) in_lane: bool,
 }
 
 /// What is told so.
@@ -104,7 +104,29 @@ fn goes_to_turn_lane(account: &Account, partner: &Party) -> bool {
 fn standing(account: &Account, party: &Party) -> Standing {
     let lane = party.lane.as_ref().and_then(|lane| Counted::of(text(&lane.source)?));
     let double = sources(party).any(|source| text(source).is_some_and(|text| text.to_lowercase().contains("double")));
-    Standing { counted: lane, at_kerb: stands_at_kerb(account, party), double }
+    let in_lane = double || party.acts.iter().filter(|fact| matches!(fact.act, Act::Hold | Act::Park)).any(is_in_lane);
+    Standing { counted: lane, at_kerb: stands_at_kerb(account, party), in_lane }
+}
+
+/// Words for a lane that is driven in, behind those that somebody stands.
+const IN_LANE: [&str; 8] = [
+    "in-lane",
+    "in lane",
+    "in the lane",
+    "in its lane",
+    "in a travel lane",
+    "in the travel lane",
+    "in the traffic lane",
+    "in the driving lane",
+];
+
+/// "parked in the travel lane", and not partly there, beside the kerb.
+fn is_in_lane(fact: &ActFact) -> bool {
+    text(&fact.source).is_some_and(|text| {
+        let text = text.to_lowercase();
+        let partly = ["partial", "partly", "curb", "kerb"].iter().any(|word| text.contains(word));
+        !partly && IN_LANE.iter().any(|words| text.contains(words))
+    })
 }
 
 /// So many bytes behind the words that somebody stands, at most, begin those for the kerb: "was stopped to the right of the AV in a curbside

@@ -9,6 +9,9 @@ use recrash_reconstruct::Reconstruction;
 const PASSED: &str = "The AV was parked at the curb on Elm Street when a van traveling west passed the parked AV on the left and the right side of \
                       the van made contact with the rear left of the AV.";
 
+const IN_LANE: &str = "The AV was parked in-lane on Elm Street with its hazard lights on. A van came out of a driveway on the right and the front of the van \
+                       made contact with the right side of the AV.";
+
 const STOPS: &str = "The AV stopped at the curb on Elm Street for a passenger drop-off. An SUV approached the AV from behind and passed the AV on the \
                           left, and the right side of the SUV made contact with the rear left of the stationary AV.";
 
@@ -32,6 +35,13 @@ fn lanes(made: &Reconstruction) -> [usize; 2] {
     let MapSpec::G(map) = &made.draft.map else { panic!("a map of roads") };
     [&map.roads[0].right, &map.roads[0].left]
         .map(|strips| strips.iter().filter(|strip| strip.kind == StripKind::Driving).count())
+}
+
+#[test]
+fn who_is_parked_in_a_lane_stands_in_it() {
+    let middle = |words: &str| made(&story(words)).rollout.ego_track().states[0].y;
+    let at_the_kerb = IN_LANE.replace("parked in-lane", "parked");
+    assert!((middle(IN_LANE) - middle(&at_the_kerb)).abs() > 1.5, "{} {}", middle(IN_LANE), middle(&at_the_kerb));
 }
 
 #[test]

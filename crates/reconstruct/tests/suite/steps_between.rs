@@ -128,13 +128,13 @@ fn who_set_off_and_slowed_to_a_stop_that_it_did_not_reach_slows() {
     let mut account = story(SLOWING);
     account.sv.state = Some(Fact::of_column(ContactState::Moving, "SV Precrash Speed (MPH)"));
     (account.sv.movement, account.sv.standing) = (None, None);
-    holds(&account, CheckKind::SvActs, "stood, gained speed, began: stopped", &[Act::Stop]);
+    holds(&account, CheckKind::SvActs, "stood, gained speed, entered the junction, began: stopped", &[Act::Stop]);
 }
 
 #[test]
 fn all_steps_are_drawn_where_there_are_more_than_are_checked() {
     let account = story(BACK_AND_FORTH);
-    let expected = "stopped, set off, stopped, reversed, stopped, set off, stopped, stood";
+    let expected = "entered the junction, stopped, set off, stopped, reversed, stopped, set off, stopped, stood";
     holds(&account, CheckKind::SvActs, expected, &[Act::Reverse]);
     let speeds = speeds(&made(&account));
     let stops = speeds.windows(2).filter(|pair| pair[0].abs() > 0.01 && pair[1].abs() <= 0.01).count();
