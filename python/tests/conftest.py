@@ -9,8 +9,6 @@ from pathlib import Path
 
 import pytest
 
-import recrash
-
 # Plots are drawn into memory.
 os.environ.setdefault("MPLBACKEND", "Agg")
 # Ray asks nobody about its use, and warns of nothing that is to come.
@@ -39,12 +37,6 @@ def command(*words: object, cwd: Path | None = None) -> subprocess.CompletedProc
     return subprocess.run(
         [*program, *map(str, words)], capture_output=True, text=True, timeout=120, cwd=cwd, env=environment, check=False
     )
-
-
-@pytest.fixture(scope="session")
-def told() -> list[recrash.Scenario]:
-    """The crashes of the built-in sample, as told."""
-    return recrash.read().reconstruct()[0]
 
 
 @pytest.fixture(scope="session")

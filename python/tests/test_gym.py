@@ -169,6 +169,12 @@ def test_a_function_replaces_the_reward_and_the_returns_are_its(crashes):
     assert ends > 3
 
 
+@pytest.fixture(scope="module")
+def told():
+    """The crashes of the built-in sample, as told."""
+    return recrash.read().reconstruct()[0]
+
+
 def test_a_split_has_no_crash_on_both_sides(told):
     train, held_out = split(told, 0.25)
     assert len(train) + len(held_out) == len(told)

@@ -226,6 +226,7 @@ def test_a_corpus_is_reconstructed_and_tested_in_parts(cluster):
     assert [row["incident"] for row in rows] == accounts.table.to_dict()["incident"]
     assert [row["standing"] for row in rows] == made.to_dict()["standing"]
     tested = {row["scenario"]: row["state_hash"] for row in recrash.test(scenarios, "idm").to_dicts()}
+    assert len(rows) > 10 and tested
     assert {row["scenario"]: row["state_hash"] for row in rows if row["scenario"]} == tested
 
 

@@ -90,17 +90,13 @@ fn prepare(tally: &mut Tally) -> Result {
     run(Command::new("npm").args(["ci", "--no-audit", "--no-fund"]).current_dir(browser_folder()))
 }
 
-/// Every test but those in documentation, and of the examples the one that the Python tests run: the others are compiled by `lint`, and need not be linked.
-const TESTS: [&str; 7] = ["test", "--workspace", "--lib", "--bins", "--tests", "--example", "measure"];
-
 fn test(tally: &mut Tally) -> Result {
     let mut command = cargo_command();
-    command.args(TESTS).arg("--no-fail-fast");
+    command.args(["test", "--workspace", "--no-fail-fast"]);
     if let Some(python) = metadrive_python() {
         command.env("RECRASH_METADRIVE_PYTHON", python);
     }
-    counted(&mut command, tally)?;
-    counted(cargo_command().args(["test", "--workspace", "--doc"]), tally)
+    counted(&mut command, tally)
 }
 
 fn docs(_: &mut Tally) -> Result {
@@ -177,7 +173,7 @@ fn browser_folder() -> PathBuf {
 
 /// The program as the Rust tests run it: one build serves all. Nothing is built right after them.
 pub fn built() -> Result<PathBuf> {
-    cargo(&[&TESTS[..], &["--no-run", "--quiet"]].concat(), &[])?;
+    cargo(&["test", "--workspace", "--no-run", "--quiet"], &[])?;
     Ok(target().join(if cfg!(windows) { "debug/recrash.exe" } else { "debug/recrash" }))
 }
 

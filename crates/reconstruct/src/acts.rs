@@ -115,7 +115,8 @@ pub(crate) fn passes_partner(sv: &Party, partner: &Party, others: &[OtherParty])
 fn is_of_junction(fact: &ActFact) -> bool {
     let Source::Words { text, .. } = &fact.source else { return false };
     let text = text.to_lowercase();
-    text.contains("intersection") && !["begin", "began", "begun"].iter().any(|begun| text.starts_with(begun))
+    ["intersection", "junction"].iter().any(|word| text.contains(word))
+        && !["begin", "began", "begun"].iter().any(|begun| text.starts_with(begun))
 }
 
 /// Who passes last passes on the side on which the ego is touched: what is told of the other side was said of something else.

@@ -329,7 +329,8 @@ impl Scene<'_> {
         let (_, to) = stand.filter(|(_, to)| to + 1 < self.until)?;
         let stops_m = 0.5 * self.mps(self.until) * self.mps(self.until) / BRAKES_MPS2;
         let up_s = (0.1 * to as f64 - SETS_OFF_BEFORE_S).max(0.1);
-        Some(((up_s * 10.0).round() / 10.0, self.at(self.until).0 - self.at(to).0 + stops_m))
+        let up_m = self.at(self.until).0 - self.at(to).0 + stops_m;
+        (1.0..20.0).contains(&up_m).then_some(((up_s * 10.0).round() / 10.0, up_m))
     }
 
     /// It drives as the ego does, ahead of it and a little earlier.

@@ -358,7 +358,8 @@ impl Told {
     pub(crate) fn lane_number(&self, of_ego: bool, lanes: usize) -> Option<usize> {
         match if of_ego { self.sv.lane? } else { self.cp.lane? } {
             LaneWord::Center if let Some(counted) = self.counted(of_ego) => counted.place(lanes),
-            LaneWord::Left if of_ego && self.layout.turn_lane => Some(1),
+            // In a lot there may be one lane.
+            LaneWord::Left if of_ego && self.layout.turn_lane => Some(1.min(lanes - 1)),
             LaneWord::Left | LaneWord::LeftTurn => Some(0),
             LaneWord::Right | LaneWord::RightTurn => Some(lanes - 1),
             LaneWord::Center => Some(lanes / 2),

@@ -95,7 +95,9 @@ fn goes_to_turn_lane(account: &Account, partner: &Party) -> bool {
     let out = |fact: &ActFact| matches!(fact.act, Act::LaneChange | Act::Pass) && fact.side == Some(LeftRight::Left);
     let goes = match (lane(partner), told(&account.came_from)) {
         (Some(LaneWord::LeftTurn), Some(Origin::Beside { side })) => side == LeftRight::Left,
-        (None, Some(Origin::Behind)) => partner.acts.iter().any(|fact| out(fact) && !fact.after_contact),
+        (Some(LaneWord::LeftTurn) | None, Some(Origin::Behind)) => {
+            partner.acts.iter().any(|fact| out(fact) && !fact.after_contact)
+        }
         _ => false,
     };
     lane(&account.sv) == Some(LaneWord::Left) && goes
@@ -104,28 +106,16 @@ fn goes_to_turn_lane(account: &Account, partner: &Party) -> bool {
 fn standing(account: &Account, party: &Party) -> Standing {
     let lane = party.lane.as_ref().and_then(|lane| Counted::of(text(&lane.source)?));
     let double = sources(party).any(|source| text(source).is_some_and(|text| text.to_lowercase().contains("double")));
-    let in_lane = double || party.acts.iter().filter(|fact| matches!(fact.act, Act::Hold | Act::Park)).any(is_in_lane);
+    let stands = |fact: &&ActFact| matches!(fact.act, Act::Hold | Act::Park) && !fact.after_contact && !fact.begun;
+    let in_lane = double || party.acts.iter().rfind(stands).is_some_and(is_in_lane);
     Standing { counted: lane, at_kerb: stands_at_kerb(account, party), in_lane }
 }
 
-/// Words for a lane that is driven in, behind those that somebody stands.
-const IN_LANE: [&str; 8] = [
-    "in-lane",
-    "in lane",
-    "in the lane",
-    "in its lane",
-    "in a travel lane",
-    "in the travel lane",
-    "in the traffic lane",
-    "in the driving lane",
-];
-
-/// "parked in the travel lane", and not partly there, beside the kerb.
+/// "parked in the travel lane", and not partly there: the reader's words of who stands in a lane end with it.
 fn is_in_lane(fact: &ActFact) -> bool {
     text(&fact.source).is_some_and(|text| {
         let text = text.to_lowercase();
-        let partly = ["partial", "partly", "curb", "kerb"].iter().any(|word| text.contains(word));
-        !partly && IN_LANE.iter().any(|words| text.contains(words))
+        text.ends_with("lane") && !["partial", "partly"].iter().any(|word| text.contains(word))
     })
 }
 

@@ -237,7 +237,9 @@ impl<'a> Seen<'a> {
         let again = extra.again && ego_goes && close && Self::mps(track, self.until) < CREEPS_MPS;
         let in_order = match (extra.goes, goes) {
             (false, Some(goes)) if again => goes <= to + 1,
-            (false, goes) => goes.is_none(),
+            // Who is told to move up has.
+            (false, None) => !(extra.again && ego_goes),
+            (false, Some(_)) => false,
             (true, Some(goes)) => !ego_goes || goes <= to + 1,
             (true, None) => false,
         };

@@ -78,8 +78,13 @@ pub(crate) fn thrower(account: &Account) -> Option<Thrower> {
 pub(crate) fn comes_as_told(told: &Told, ego: &ActorTrack, [partner, other]: [&ActorTrack; 2], step: usize) -> bool {
     let road = Vec2::from_heading(ego.states[0].heading);
     let met = partner.states[step.min(partner.states.len() - 1)].position();
-    let left_m = road.cross(other.states[0].position() - met);
-    let on_side = |side: LeftRight| (side == LeftRight::Left) == (left_m > 0.0) && left_m.abs() > ASIDE * LANE_M;
+    let of_ego = ego.states[step.min(ego.states.len() - 1)].position();
+    // Of the ego, or of whom it touched.
+    let on_side = |side: LeftRight| {
+        let left_m = [met, of_ego].map(|from| road.cross(other.states[0].position() - from));
+        let sign = if side == LeftRight::Left { 1.0 } else { -1.0 };
+        left_m.iter().any(|left_m| sign * left_m > ASIDE * LANE_M)
+    };
     let turned = math::wrap_angle(other.states[0].heading - ego.states[0].heading).abs();
     match told.thrower {
         None => true,
@@ -106,6 +111,9 @@ fn from_beside(
         _ if t_m > right_m => right_m - 0.5 * LANE_M,
         _ => return None,
     };
+    if !has_lane(ground, from_m) {
+        return None;
+    }
     let sign = (t_m - from_m).signum();
     let aside = Vec2::from_heading(touch.heading).left() * (sign * CORNER_M);
     let end = Pose { position: touch.position + aside, heading: touch.heading - sign * CORNER_RAD };
@@ -115,6 +123,12 @@ fn from_beside(
     let before_m = speed_mps * until_s - way_m(arm_m, &[leaves, end])?;
     let plan = ActorPlan { speed_mps, course: legs(&[leaves, end]), ..ActorPlan::standing(at(back(leaves, before_m))) };
     (before_m > LEAST_BEFORE_M).then_some(plan)
+}
+
+/// Whether a lane of the ego's direction lies there: neither a strip beside the lanes nor the other direction's. [m]
+fn has_lane(ground: &Ground, t_m: f64) -> bool {
+    let left_m = (f64::from(ground.lane) + 0.5) * LANE_M;
+    t_m < ground.lane_edges_m[1] && t_m > -left_m
 }
 
 /// How long the way through some poses is. [m]
@@ -132,6 +146,9 @@ fn back(pose: Pose, by_m: f64) -> Pose {
 fn flank(told: &Told, ground: &Ground, partner: &OrientedBox, (length_m, width_m): (f64, f64)) -> Option<Pose> {
     let Some(Thrower::Beside(side)) = told.thrower else { return None };
     let lane_m = if side == LeftRight::Left { -LANE_M } else { LANE_M };
+    if !has_lane(ground, lane_m) {
+        return None;
+    }
     let (s_m, _) = ground.beside(partner.centre);
     let steps = (BEHIND_M / STEP_M) as usize;
     let poses = LANE_PARTS
@@ -145,8 +162,7 @@ fn at(pose: Pose) -> Place {
     Place::at(pose.position.x, pose.position.y, pose.heading.to_degrees())
 }
 
-/// Who touched the partner on its way: it comes up from behind and runs into it, right before the contact. What is told of that
-/// first contact beside that there was one is not shown.
+/// Who touched the partner on its way: it comes up from behind, or along the lane beside, and runs into it, right before the contact.
 pub(crate) fn nudger(told: &Told, staging: &Staging, own: OwnWay) -> Actor {
     let (cp, gear) = (&told.cp, if told.cp.state == ContactState::Reversing { -1.0 } else { 1.0 });
     let way = Vec2::from_heading(staging.cp.heading) * gear;
@@ -267,7 +283,7 @@ fn thrown_paces(told: &Told, staging: &Staging) -> Thrown {
 /// Who touches askew to its road was there only at the end: it, and who runs into it, came by its way. [rad]
 const ASKEW_RAD: f64 = 0.05;
 
-/// The partner, and another who runs into it from behind: a car.
+/// The partner, and another who runs into it from behind, or out of the lane from which it is told to come.
 pub(crate) fn thrown(told: &Told, staging: &Staging) -> Vec<Actor> {
     let cp = &told.cp;
     let Thrown { pace, pusher_mps, rolls_mps } = thrown_paces(told, staging);

@@ -1,7 +1,7 @@
 //! What people see: clean text whoever wrote it, tables as wide as the terminal, and an end without a panic where nobody
 //! looks.
 
-use crate::common::{FEW, Place, SMALL, recrash};
+use crate::common::{FEW, Place, SMALL, plain_recrash, recrash};
 use recrash_records::SAMPLE_CSV;
 use std::fs::File;
 use std::process::{Output, Stdio};
@@ -9,8 +9,7 @@ use std::process::{Output, Stdio};
 /// Runs a command with its standard output going there.
 fn into(target: Stdio, words: &[&str]) -> Output {
     let place = Place::new();
-    let program = assert_cmd::cargo::cargo_bin("recrash");
-    let mut command = std::process::Command::new(program);
+    let mut command = plain_recrash();
     command.args(words).current_dir(place.folder()).stdout(target).stderr(Stdio::piped());
     command.spawn().unwrap().wait_with_output().unwrap()
 }
@@ -23,7 +22,7 @@ const PRINTING: [&[&str]; 8] = [
     &["--version"],
     &["doctor"],
     &["completions", "bash"],
-    &["run", "--profile", "paper", "--records", FEW, "--budget", "2", "--tune-budget", "1", "--json"],
+    &["run", "--records", FEW, "--budget", "2", "--tune-budget", "1", "--json"],
 ];
 
 #[test]

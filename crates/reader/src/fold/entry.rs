@@ -31,7 +31,7 @@ const ENDS: [&str; 16] = [
 ];
 
 /// Words that stand before "intersection" in its name.
-const OF_INTERSECTION: [&str; 25] = [
+const OF_INTERSECTION: [&str; 18] = [
     "a",
     "an",
     "the",
@@ -50,14 +50,10 @@ const OF_INTERSECTION: [&str; 25] = [
     "signal",
     "controlled",
     "of",
-    "green",
-    "yellow",
-    "red",
-    "light",
-    "traffic",
-    "at",
-    "in",
 ];
+
+/// And of a light there: "through a green traffic light at the intersection".
+const OF_LIGHT: [&str; 6] = ["green", "yellow", "red", "light", "at", "in"];
 
 /// Words that tell how far into an intersection.
 const HOW_FAR: [&str; 8] = ["halfway", "midway", "partway", "partially", "partly", "almost", "nearly", "mostly"];
@@ -92,7 +88,7 @@ pub(super) fn beside(reading: &Reading<'_>, frame: &Frame, fact: &ActFact) -> Op
     let stands = matches!(fact.act, Act::Stop | Act::Hold);
     let moves = matches!(fact.act, Act::Follow | Act::SetOff | Act::Accelerate | Act::Slow);
     let end = behind_verb(reading, frame, stands).filter(|_| stands || moves)?;
-    Some(entry(frame.first, end, stands, moves && is_begun(reading, frame)))
+    Some(entry(frame.first, end, stands, moves && (fact.begun || stays_begun(reading, frame))))
 }
 
 /// "traveling eastbound on Oak Street through the intersection", "stopped partway into the intersection": the token behind it.
@@ -106,7 +102,7 @@ fn behind_verb(reading: &Reading<'_>, frame: &Frame, stands: bool) -> Option<usi
     let into = (frame.first + 1..end)
         .take_while(|&at| !ENDS.contains(&word(at)))
         .find(|&at| matches!(word(at), "into" | "through") && (!stands || HOW_FAR.contains(&word(at - 1))))?;
-    intersection(reading, into + 1, frame.sentence)
+    intersection(reading, into + 1, frame.sentence, &OF_LIGHT)
 }
 
 /// "(halfway) through the intersection", "while in the intersection", at the head of the sentence of which this is the first verb.
@@ -123,14 +119,17 @@ fn already_inside(reading: &Reading<'_>, frame: &Frame) -> Option<(usize, usize)
         "in" | "inside" | "within" => at > first && matches!(word(at - 1), "while" | "still" | "already"),
         _ => false,
     })?;
-    Some((at - 1, intersection(reading, at + 1, frame.sentence)?))
+    Some((at - 1, intersection(reading, at + 1, frame.sentence, &[])?))
 }
 
-/// The token behind "the intersection", where that begins here.
-fn intersection(reading: &Reading<'_>, from: usize, sentence: usize) -> Option<usize> {
+/// The token behind "the intersection", where that begins here; these words may stand before it as well.
+fn intersection(reading: &Reading<'_>, from: usize, sentence: usize, more: &[&str]) -> Option<usize> {
     let word = |at: usize| reading.story.tokens[at].text.as_str();
     let end = reading.story.sentences[sentence].end;
-    let at = (from..end).find(|&at| !OF_INTERSECTION.contains(&word(at)))?;
+    let light = |at: usize| word(at) == "traffic" && at + 1 < end && matches!(word(at + 1), "light" | "signal");
+    let in_name =
+        |at: usize| OF_INTERSECTION.contains(&word(at)) || more.contains(&word(at)) || !more.is_empty() && light(at);
+    let at = (from..end).find(|&at| !in_name(at))?;
     matches!(word(at), "intersection" | "junction").then_some(at + 1)
 }
 
@@ -155,12 +154,12 @@ pub(super) fn reach(reading: &Reading<'_>, frame: &Frame, act: Act) -> usize {
     let word = |at: usize| reading.story.tokens[at].text.as_str();
     let end = reading.story.sentences[frame.sentence].end;
     let from = frame.end + usize::from(frame.end < end && matches!(word(frame.end), "into" | "through"));
-    let behind = if act == Act::Enter { intersection(reading, from, frame.sentence) } else { None };
+    let behind = if act == Act::Enter { intersection(reading, from, frame.sentence, &OF_LIGHT) } else { None };
     behind.unwrap_or(frame.end)
 }
 
 /// "began to proceed through the intersection", and not "and came to a stop" there.
-fn is_begun(reading: &Reading<'_>, frame: &Frame) -> bool {
+fn stays_begun(reading: &Reading<'_>, frame: &Frame) -> bool {
     let who = doer(reading, frame);
     let goes_on = |later: &Frame| {
         later.sentence == frame.sentence

@@ -1,10 +1,11 @@
 //! Others come to where they are told to stand, go on where only the ego stays, and run into the partner from where they are told to come.
 
 use crate::others::{shown_but, told, track};
-use crate::ways::{before_contact, made, partner, story};
-use recrash_model::account::{Act, ContactState, Fact, LeftRight, Origin, StandReason};
+use crate::ways::{before_contact, checks_without, made, partner, partner_without_acts, story};
+use recrash_model::account::{Act, ActFact, ContactState, Fact, LeftRight, Origin, StandReason};
 use recrash_model::metrics::{CheckKind, CheckResult};
 use recrash_model::scenario::{Actor, ActorPlan};
+use recrash_model::template::Movement;
 use recrash_reconstruct::{held_against, reconstruct};
 
 const STANDS_AGAIN: &str = "The AV was stopped behind a sedan in a queue of traffic for a red light. The sedan proceeded forward, and the AV proceeded forward a short distance and \
@@ -96,4 +97,29 @@ fn an_ego_that_is_told_in_the_junction_of_a_street_is_in_one() {
     let verdict = held_against(&account, &scenario, &plain.rollout).expect("it can be staged");
     let acts = verdict.checks.iter().find(|check| check.kind == CheckKind::SvActs).expect("told");
     assert_eq!(acts.result, CheckResult::CannotBeShown, "{acts:?}");
+}
+
+const RIDER: &str = "The AV was stopped facing north on Elm Street. A scooter rider behind the AV slowed and made contact with the rear of the AV.";
+
+#[test]
+fn who_rides_on_small_wheels_does_what_it_is_told_to_but_no_turn_is_asked_of_it() {
+    let account = story(RIDER);
+    let rider = account.partner.as_ref().expect("a partner");
+    let slow = rider.acts.iter().find(|fact| fact.act == Act::Slow).expect("told").clone();
+    let shown = made(&account);
+    let acts = shown.verdict.checks.iter().find(|check| check.kind == CheckKind::CpActs).expect("it is looked for");
+    assert!(acts.result == CheckResult::Shown && acts.expected.contains("slowed"), "{acts:?}");
+    // Who comes at one speed has not slowed.
+    let less = checks_without(&account, |less| partner_without_acts(less, &[Act::Slow]));
+    let acts = less.iter().find(|check| check.kind == CheckKind::CpActs).expect("told");
+    assert_eq!(acts.result, CheckResult::CannotBeShown, "{acts:?}");
+    // On small wheels it turns at once.
+    let mut turns = account;
+    let rider = turns.partner.as_mut().expect("a partner");
+    rider.movement = Some(Fact::by_rule(Movement::Straight, "a test"));
+    rider.acts.push(ActFact { act: Act::Turn, side: Some(LeftRight::Left), ..slow });
+    let scenario = recrash_roads::check(shown.draft).expect("it ran").value;
+    let verdict = held_against(&turns, &scenario, &shown.rollout).expect("it can be staged");
+    let acts = verdict.checks.iter().find(|check| check.kind == CheckKind::CpActs).expect("told");
+    assert!(acts.result == CheckResult::Shown && !acts.expected.contains("turned"), "{acts:?}");
 }

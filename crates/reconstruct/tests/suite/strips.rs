@@ -1,7 +1,7 @@
 //! Who is told to be in a lane beside the driving lanes is drawn there; and who is told a signal or a sign comes over its line.
 
 use crate::ways::{before_contact, made, partner, story};
-use recrash_model::account::{Account, ControlDevice, Fact, SignalState};
+use recrash_model::account::{Account, ControlDevice, Fact, LaneWord, LeftRight, Origin, RoadFeature, SignalState};
 use recrash_model::metrics::{Check, CheckKind, CheckResult};
 use recrash_model::scenario::{MapSpec, StripKind};
 use recrash_model::zones::ContactZone;
@@ -124,4 +124,30 @@ fn the_ego_drives_over_the_track_of_a_gate() {
     let made = made(&account);
     assert_eq!(result(&made.verdict.checks, CheckKind::SvZones), Some(CheckResult::Shown), "{:?}", made.verdict);
     assert_eq!(made.draft.objects.len(), 1);
+}
+
+const TURN_LANE: &str = "The AV was traveling east on Oak Street in the left lane. A sedan was traveling in the left turn lane to the left of the \
+                         AV. The sedan changed lanes to the right, and the front right of the sedan made contact with the left side of \
+                         the AV.";
+
+#[test]
+fn a_lane_for_left_turns_lies_beside_the_left_lane_and_leads_the_same_way() {
+    let mut account = story(TURN_LANE);
+    account.sv.lane = Some(Fact::by_rule(LaneWord::Left, "a test"));
+    account.came_from = Some(Fact::by_rule(Origin::Beside { side: LeftRight::Left }, "a test"));
+    account.partner.as_mut().expect("a partner").lane = Some(Fact::by_rule(LaneWord::LeftTurn, "a test"));
+    assert!(account.place.features.iter().any(|fact| fact.value == RoadFeature::TurnLane), "{:?}", account.place);
+    let made = made(&account);
+    // One lane more than a street has.
+    assert_eq!(strips(&made).iter().filter(|kind| **kind == StripKind::Driving).count(), 3);
+    for kind in [CheckKind::SvLane, CheckKind::CpLane] {
+        assert_eq!(result(&made.verdict.checks, kind), Some(CheckResult::Shown), "{:?}", made.verdict);
+    }
+    let aside_m = partner(&made).0[0].y - made.rollout.ego_track().states[0].y;
+    assert!((2.5..4.3).contains(&aside_m), "{aside_m} m to the left");
+    // In the ego's lane it is in none for turns; and without one the ego's is not the left lane.
+    assert_eq!(moved(&account, &made, -3.4, CheckKind::CpLane), Some(CheckResult::NotShown));
+    let mut without = account;
+    without.place.features.retain(|fact| fact.value != RoadFeature::TurnLane);
+    assert_eq!(moved(&without, &made, 0.0, CheckKind::SvLane), Some(CheckResult::NotShown));
 }

@@ -8,8 +8,8 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, Once, OnceLock};
 
-/// A crash file with the first rows of the built-in sample, and with [`UNREAD`]. To stage the whole sample takes ten times as long: what is not about all of
-/// its incidents is tested on these.
+/// A crash file with the first rows of the built-in sample, and with [`UNREAD`]. To stage the whole sample takes ten times as long: what is
+/// not about all of its incidents is tested on these.
 pub const FEW: &str = concat!(env!("CARGO_TARGET_TMPDIR"), "/few.csv");
 /// A pickup that backed out of its space; the built-in reader does not say who struck whom.
 pub const UNREAD: &str = "90101-251";
@@ -39,7 +39,12 @@ pub fn plain_recrash() -> std::process::Command {
 /// [`FEW`], which is written once.
 pub fn few() -> &'static Path {
     static WRITTEN: Once = Once::new();
-    WRITTEN.call_once(|| write_rows(Path::new(FEW), |number, report| number < 60 || report == UNREAD));
+    // Whole or not at all: the tests of another process may read it.
+    WRITTEN.call_once(|| {
+        let fresh = tempfile::NamedTempFile::new_in(env!("CARGO_TARGET_TMPDIR")).unwrap();
+        write_rows(fresh.path(), |number, report| number < 60 || report == UNREAD);
+        fresh.persist(FEW).unwrap();
+    });
     Path::new(FEW)
 }
 

@@ -463,7 +463,8 @@ impl<'a> Case<'a> {
             self.reading.story.frames.iter().any(|other| {
                 (named..frame.first).contains(&other.first) && other.who.is_some_and(|who| who != self.actor)
             });
-        let curb = words.iter().any(|token| matches!(token.text.as_str(), "curb" | "curbside"));
+        let word = |at: usize| words.get(at).map_or("", |token| token.text.as_str());
+        let curb = (0..words.len()).any(|at| matches!(word(at), "curb" | "curbside") && word(at + 1) != "lane");
         let drove = words.iter().any(|token| matches!(token.text.as_str(), "traveling" | "driving" | "passing"));
         if others || drove || !curb {
             return None;
@@ -640,7 +641,9 @@ impl<'a> Case<'a> {
                 words.windows(2).any(|pair| pair == ["right", "angle"] || pair == ["right", "angles"])
                     || words.windows(3).any(|row| matches!(row, ["left", "to", "right"] | ["right", "to", "left"]))
                     || words.contains(&"perpendicular")
-                    || words.windows(3).any(|row| matches!(row, ["road" | "street", "from", _]))
+                    || words
+                        .windows(4)
+                        .any(|row| matches!(row, ["road" | "street", "from", "the" | "its", "left" | "right"]))
             })
     }
 
