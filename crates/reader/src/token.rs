@@ -209,6 +209,19 @@ fn ends_sentence(tokens: &[Token], at: usize) -> bool {
     }
 }
 
+/// A small number, in a word or in digits.
+pub(crate) fn number(word: &str) -> Option<u8> {
+    match word {
+        "one" => Some(1),
+        "two" => Some(2),
+        "three" => Some(3),
+        "four" => Some(4),
+        "five" => Some(5),
+        "six" => Some(6),
+        other => other.parse().ok(),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

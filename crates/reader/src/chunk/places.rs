@@ -1,7 +1,7 @@
 //! Directions, lanes and places beside the road.
 
 use super::{Chunker, Spot};
-use crate::token::{Token, TokenKind};
+use crate::token::{Token, TokenKind, number};
 use recrash_model::account::{Compass, LaneWord};
 
 /// Most tokens of the name of a lane before "lane".
@@ -45,16 +45,9 @@ fn in_lane_names(word: &str) -> bool {
         || matches!(word, "shared" | "way")
 }
 
-/// A small number.
+/// So many lanes.
 fn count(word: &str) -> Option<u8> {
-    match word {
-        "one" => Some(1),
-        "two" => Some(2),
-        "three" => Some(3),
-        "four" => Some(4),
-        "five" => Some(5),
-        _ => word.parse().ok().filter(|number| (1..=MOST_LANES).contains(number)),
-    }
+    number(word).filter(|number| (1..=MOST_LANES).contains(number))
 }
 
 /// A road has no more lanes in one direction.

@@ -90,6 +90,21 @@ fn enters(all: &mut Vec<ActFact>, fact: &ActFact) {
     }
 }
 
+/// An act before the contact of which nothing more is told than that it was.
+fn plain(reading: &Reading<'_>, act: Act, number: usize) -> ActFact {
+    ActFact {
+        act,
+        side: None,
+        step: number as u32,
+        after_contact: false,
+        begun: false,
+        done: false,
+        after_other: None,
+        manner: None,
+        source: reading.of(&reading.story.frames[number]),
+    }
+}
+
 /// "It stopped at a red light alongside a van. Both set off": the van had stood there too.
 pub(super) fn stood_alongside(reading: &Reading<'_>, actor: Actor, mut acts: Vec<ActFact>) -> Vec<ActFact> {
     let known = &reading.story.world.actors[actor];
@@ -108,17 +123,7 @@ pub(super) fn stood_alongside(reading: &Reading<'_>, actor: Actor, mut acts: Vec
     if acts.is_empty() || acts.iter().any(own) {
         return acts;
     }
-    let fact = ActFact {
-        act: Act::Hold,
-        side: None,
-        step: number as u32,
-        after_contact: false,
-        begun: false,
-        done: false,
-        after_other: None,
-        manner: None,
-        source: reading.of(frame),
-    };
+    let fact = plain(reading, Act::Hold, number);
     acts.insert(0, fact);
     acts
 }
@@ -143,17 +148,7 @@ fn with_contact(reading: &Reading<'_>, actor: Actor, all: &mut Vec<ActFact>) {
         last.manner = last.manner.or(Some(manner));
         return;
     }
-    let fact = ActFact {
-        act: Act::Follow,
-        side: None,
-        step: number as u32,
-        after_contact: false,
-        begun: false,
-        done: false,
-        after_other: None,
-        manner: Some(manner),
-        source: reading.of(frame),
-    };
+    let fact = ActFact { manner: Some(manner), ..plain(reading, Act::Follow, number) };
     all.insert(0, fact);
 }
 

@@ -2,6 +2,7 @@
 
 use super::Reading;
 use crate::lexicon::Lexicon;
+use crate::token::number;
 use recrash_model::account::{Fact, Place, PlaceKind, RoadFeature};
 use recrash_model::template::RoadType;
 
@@ -101,17 +102,5 @@ fn lanes(reading: &Reading<'_>, place: &mut Place, first: usize, end: usize) {
         if arms && place.arms.is_none() && (3..=8).contains(&number) {
             place.arms = Some(reading.told(number, at, at + 3));
         }
-    }
-}
-
-fn number(word: &str) -> Option<u8> {
-    match word {
-        "one" => Some(1),
-        "two" => Some(2),
-        "three" => Some(3),
-        "four" => Some(4),
-        "five" => Some(5),
-        "six" => Some(6),
-        other => other.parse().ok(),
     }
 }
