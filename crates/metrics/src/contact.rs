@@ -2,10 +2,10 @@
 //!
 //! Model, partition and reasons: `docs/models/contact-zones.md`.
 
-use crate::polygon::ConvexPolygon;
 use recrash_model::geometry::{OrientedBox, Vec2};
 use recrash_model::math;
 use recrash_model::metrics::CollisionKind;
+use recrash_model::polygon::ConvexPolygon;
 use recrash_model::zones::ContactZone;
 
 /// Boxes that do not overlap are moved together along the nearest line until they overlap by this. [m]

@@ -2,10 +2,10 @@
 //!
 //! Model, formula and sources: `docs/models/post-encroachment-time.md`.
 
-use crate::polygon::ConvexPolygon;
 use crate::swept::separating_axes;
 use recrash_model::geometry::{OrientedBox, Vec2};
 use recrash_model::metrics::Timed;
+use recrash_model::polygon::ConvexPolygon;
 use std::ops::Range;
 
 /// Segments in one block of the coarse search.

@@ -19,7 +19,6 @@ pub mod following;
 pub mod measure;
 #[cfg(test)]
 mod oracle;
-mod polygon;
 mod scene;
 pub mod severity;
 pub mod swept;

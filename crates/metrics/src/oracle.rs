@@ -3,10 +3,10 @@
 
 use crate::encroachment::post_encroachment_time;
 use crate::following::Following;
-use crate::polygon::ConvexPolygon;
 use crate::swept::time_to_collision;
 use recrash_model::geometry::{OrientedBox, Pose, Vec2};
 use recrash_model::math;
+use recrash_model::polygon::ConvexPolygon;
 
 /// Size of the vehicles in `crime.py`. [m]
 const LENGTH_M: f64 = 4.515;

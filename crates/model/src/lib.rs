@@ -21,6 +21,7 @@ pub mod labelled;
 pub mod math;
 pub mod metrics;
 pub mod narrative;
+pub mod polygon;
 pub mod preventability;
 pub mod profile;
 pub mod record;

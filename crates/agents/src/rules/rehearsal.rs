@@ -1,10 +1,11 @@
 //! A rehearsal: both follow their lanes as told, and nobody reacts. It shows where and how they would meet, so that a
 //! design can choose lanes and timing that make the told meeting happen. The simulator has the last word.
 
-use recrash_model::geometry::{OrientedBox, Pose, Vec2};
+use recrash_model::geometry::{OrientedBox, Pose};
 use recrash_model::kinds::PartnerKind;
 use recrash_model::math;
 use recrash_model::metrics::CollisionKind;
+use recrash_model::polygon::ConvexPolygon;
 use recrash_model::scenario::{LateralMove, Policy};
 use recrash_model::surroundings::Surface;
 use recrash_model::zones::ContactZone;
@@ -122,7 +123,7 @@ pub fn rehearse(ego: &Motion, partner: &Motion, from_s: f64, until_s: f64) -> Op
     let (gap_m, time_s) = closest?;
     let moment = time_s;
     let (a, b) = (ego.outline(moment), partner.outline(moment));
-    let (on_ego, on_partner) = match middle_of_overlap(&a, &b) {
+    let (on_ego, on_partner) = match ConvexPolygon::overlap(&a, &b).centroid() {
         Some(middle) => (middle, middle),
         None => {
             let (on_ego, on_partner, _) = a.nearest_points(&b);
@@ -142,34 +143,6 @@ pub fn rehearse(ego: &Motion, partner: &Motion, from_s: f64, until_s: f64) -> Op
         partner_shifted_m: (partner.offset(moment).0 - partner.plan.start_t_m).abs(),
         kind: kind_of(&a, ego_zone, &b, partner_zone),
     })
-}
-
-/// Mean corner of what two boxes share: the one cut along the edges of the other.
-fn middle_of_overlap(a: &OrientedBox, b: &OrientedBox) -> Option<Vec2> {
-    let mut shared: Vec<Vec2> = a.corners().to_vec();
-    let edges = b.corners();
-    for (n, from) in edges.iter().enumerate() {
-        let along = edges[(n + 1) % 4] - *from;
-        // Corners are in anticlockwise order: inside is to the left of every edge.
-        let inside = |point: Vec2| along.cross(point - *from);
-        let mut kept = Vec::new();
-        for (m, point) in shared.iter().enumerate() {
-            let next = shared[(m + 1) % shared.len()];
-            let (here, there) = (inside(*point), inside(next));
-            if here >= 0.0 {
-                kept.push(*point);
-            }
-            if (here >= 0.0) != (there >= 0.0) {
-                kept.push(*point + (next - *point) * (here / (here - there)));
-            }
-        }
-        shared = kept;
-    }
-    if shared.is_empty() {
-        return None;
-    }
-    let sum = shared.iter().fold(Vec2::default(), |sum, point| sum + *point);
-    Some(sum * (1.0 / shared.len() as f64))
 }
 
 fn kind_of(
@@ -255,14 +228,5 @@ mod tests {
         assert_eq!(meeting.kind, Some(CollisionKind::RearEndByEgo));
         // 15 m apart, 4 m of cars, 5 m/s faster: 2.2 s.
         assert!((meeting.time_s - 2.2).abs() <= 0.05 + 1e-9, "{meeting:?}");
-    }
-
-    #[test]
-    fn the_middle_of_an_overlap_is_that_of_the_shared_rectangle() {
-        let at = |x: f64, y: f64| OrientedBox::new(Pose { position: Vec2::new(x, y), heading: 0.0 }, 4.0, 2.0);
-        // Shared: x from 1 to 2, y from 0 to 1.
-        let middle = middle_of_overlap(&at(0.0, 0.0), &at(3.0, 1.0)).expect("they overlap");
-        assert!((middle.x - 1.5).abs() < 1e-9 && (middle.y - 0.5).abs() < 1e-9, "{middle:?}");
-        assert_eq!(middle_of_overlap(&at(0.0, 0.0), &at(9.0, 0.0)), None);
     }
 }

@@ -107,16 +107,36 @@ fn an_edited_case_that_leaves_the_suite_leaves_its_edit_there() {
 }
 
 #[test]
-fn a_run_edited_by_hand_is_made_again_by_a_run_and_refused_by_a_report() {
+fn a_run_and_a_triage_edited_by_hand_are_made_again_by_a_run_and_refused_by_a_report() {
     let place = Place::made(&THREE);
-    let file = files(&place, "7-tuned-runs")[0].clone();
-    let made = std::fs::read(&file).unwrap();
-    edit(&file, "/judgement/findings", serde_json::json!([]));
+    let folder = place.path("suite/7-tuned-runs");
+    let entries = std::fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().path());
+    let triage = entries.filter(|path| path.to_string_lossy().ends_with(".triage.json")).min().unwrap();
+    let edits = [
+        (files(&place, "7-tuned-runs")[0].clone(), "/judgement/findings", serde_json::json!([])),
+        (triage, "/others", serde_json::json!([])),
+    ];
+    for (file, pointer, value) in edits {
+        let made = std::fs::read(&file).unwrap();
+        edit(&file, pointer, value);
+        let (code, _, error) = place.run(&["report", "--quiet"]);
+        assert_eq!(code, 2, "{error}");
+        assert!(error.contains("changed by hand") && error.contains("recrash triage"), "{error}");
+        run(&place, &THREE);
+        assert_eq!(std::fs::read(&file).unwrap(), made, "{}", file.display());
+    }
+}
+
+#[test]
+fn a_report_right_after_an_edit_of_a_tuned_file_is_refused_and_shows_no_old_run() {
+    let place = Place::made(&THREE);
+    let tuned = files(&place, "6-tuned")[0].clone();
+    edit(&tuned, "/ego/target_speed_mps", slower(&tuned));
+    let page = std::fs::read(place.path("suite/report.html")).unwrap();
     let (code, _, error) = place.run(&["report", "--quiet"]);
     assert_eq!(code, 2, "{error}");
-    assert!(error.contains("changed by hand") && error.contains("recrash triage"), "{error}");
-    run(&place, &THREE);
-    assert_eq!(std::fs::read(&file).unwrap(), made);
+    assert!(error.contains("recrash triage"), "{error}");
+    assert_eq!(std::fs::read(place.path("suite/report.html")).unwrap(), page);
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! What a suite's folder may count on: one run at a time, nothing left behind, nothing touched that is not its own.
 
-use crate::common::{Place, SMALL, driving_ego};
+use crate::common::{Place, SMALL, TOLD, driving_ego, plain_recrash};
 use std::path::Path;
 
 /// A place with a small suite in `suite/`, and the words that make it again.
@@ -268,4 +268,33 @@ fn the_report_takes_the_folder_as_other_commands_do() {
     let (code, _, error) = place.run(&["report", "other", "--quiet"]);
     assert_eq!(code, 0, "{error}");
     assert_eq!(place.run(&["report", "other", "--out", "suite"]).0, 2);
+}
+
+/// What a run writes is told by the system, of a shell and of the programs that it waited for.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_run_writes_at_most_three_times_the_bytes_of_its_suite() {
+    fn held(folder: &std::path::Path) -> u64 {
+        let entries = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap());
+        entries
+            .map(|entry| if entry.path().is_dir() { held(&entry.path()) } else { entry.metadata().unwrap().len() })
+            .sum()
+    }
+    for (words, more) in [(&SMALL[..], &["--profile", "paper"][..]), (&TOLD[..], &[][..])] {
+        let place = Place::new();
+        let recrash = plain_recrash();
+        let output = std::process::Command::new("sh")
+            .args(["-c", "\"$@\" >&2 && grep wchar /proc/$$/io", "sh"])
+            .arg(recrash.get_program())
+            .args(words)
+            .args(more)
+            .current_dir(place.folder())
+            .output()
+            .unwrap();
+        let (told, error) = (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
+        let written: u64 =
+            told.trim().strip_prefix("wchar: ").unwrap_or_else(|| panic!("{told}{error}")).parse().unwrap();
+        let held = held(&place.path("suite"));
+        assert!(held <= written && written <= 3 * held, "{words:?}: {written} bytes written, {held} held");
+    }
 }

@@ -3,8 +3,11 @@
 use crate::common::{checked, crossing};
 use recrash_metadrive::{Drive, Metadrive, Options, inspect};
 use recrash_model::kinds::PartnerKind;
+use recrash_model::math::wrap_angle;
 use recrash_model::rollout::{EventKind, Role, Rollout, TerminationKind};
+use recrash_model::surroundings::Surface;
 use recrash_model::vehicle::VehicleSpec;
+use recrash_plan::Plan;
 use recrash_roads::{Scenario, background_traffic};
 use serde_json::json;
 use std::sync::OnceLock;
@@ -258,6 +261,71 @@ fn every_kind_holds_its_line_after_a_sideways_move_and_brakes_no_harder_than_pla
         let hardest = states.windows(2).map(|pair| (pair[0].speed() - pair[1].speed()) / 0.1).fold(0.0, f64::max);
         if states.len() < 150 || off_m > 0.05 || off_deg > 0.3 || hardest > 2.5 {
             bad.push(format!("{kind:?} {speed}: {off_m:.3} m, {off_deg:.3} deg, {hardest:.1} m/s^2"));
+        }
+    }
+    assert!(bad.is_empty(), "{bad:#?}");
+}
+
+#[test]
+fn every_kind_holds_its_line_behind_a_bend_and_behind_a_turn_and_brakes_no_harder_than_planned() {
+    let Some(metadrive) = start() else { return };
+    let moving = PartnerKind::ALL.into_iter().filter(|kind| *kind != PartnerKind::FixedObject);
+    let cases: Vec<(PartnerKind, f64, &str)> = moving
+        .enumerate()
+        .map(|(number, kind)| {
+            let speed = (VehicleSpec::of(kind).max_speed_mps.min(10.0) * 100.0).floor() / 100.0;
+            (kind, speed, ["left", "right", "turn"][number % 3])
+        })
+        .collect();
+    let scenarios: Vec<Scenario> = cases
+        .iter()
+        .map(|(kind, speed, way)| {
+            let length_m = (speed * 13.5).max(30.0);
+            let mut draft = crossing();
+            draft["map"] = match *way {
+                "turn" => json!({"type": "X", "lanes": 2, "lane_width_m": 3.5, "approach_m": 60.0, "arm_m": length_m}),
+                direction => json!({"type": "C", "lanes": 2, "lane_width_m": 3.5, "approach_m": 60.0, "radius_m": 50.0,
+                                    "angle_deg": 45.0, "direction": direction, "length_m": length_m}),
+            };
+            draft["duration_s"] = json!(60.0);
+            draft["ego"] =
+                json!({"turn": "straight", "lane": 0, "s_m": 5.0, "speed_mps": 1.0, "target_speed_mps": 1.0});
+            let partner = &mut draft["partners"][0];
+            partner["kind"] = serde_json::to_value(kind).expect("a word");
+            partner["approach"] = json!("same");
+            partner["turn"] = json!(if *way == "turn" { "right" } else { "straight" });
+            partner["lane_offset"] = json!(1);
+            partner["start"] = json!({"delta_s_m": 40.0});
+            partner["speed_mps"] = json!(speed);
+            partner["policy"] =
+                json!({"type": "sudden_brake", "target_speed": speed, "brake_step": 0, "brake_steps": 0});
+            checked(&draft)
+        })
+        .collect();
+    let mut bad = Vec::new();
+    let rollouts = metadrive.simulate_all(&scenarios, &Drive::MetadriveIdm, &|_| {});
+    for ((scenario, (kind, speed, way)), rollout) in scenarios.iter().zip(&cases).zip(rollouts) {
+        let states = &rollout.unwrap_or_else(|error| panic!("{kind:?}: {error}")).actors[1].states;
+        let path = &scenario.partners()[0].path;
+        let bend_m = path.segments.last().map_or(0.0, |segment| segment.start_m);
+        let behind =
+            states.iter().position(|state| path.project(state.position(), 0).s > bend_m).unwrap_or(states.len());
+        let late: Vec<_> = states.iter().skip(behind + 120).collect();
+        let (mut off_m, mut off_deg) = (0.0_f64, 0.0_f64);
+        for state in &late {
+            let place = path.project(state.position(), 0);
+            if place.s < path.length_m {
+                let off = wrap_angle(state.heading - path.pose(place.s, 0.0).heading);
+                (off_m, off_deg) = (off_m.max(place.t.abs()), off_deg.max(off.to_degrees().abs()));
+            }
+        }
+        let plan = Plan::new(*kind, &scenario.draft().partners[0].policy, 0.0, Surface::Dry);
+        let hardest = states.windows(2).map(|pair| (pair[0].speed() - pair[1].speed()) / 0.1).fold(0.0, f64::max);
+        if late.is_empty() || off_m > 0.05 || off_deg > 0.3 || hardest > plan.greatest_braking_mps2 + 0.1 {
+            let seen = late.len();
+            bad.push(format!(
+                "{kind:?} {speed} {way}: {off_m:.3} m, {off_deg:.3} deg in {seen} states, {hardest:.1} m/s^2"
+            ));
         }
     }
     assert!(bad.is_empty(), "{bad:#?}");

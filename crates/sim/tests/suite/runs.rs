@@ -5,7 +5,7 @@ use recrash_model::kinds::PartnerKind;
 use recrash_model::rollout::{ActorState, Rollout, Substeps, Termination, TerminationKind};
 use recrash_model::scenario::{Approach, ScenarioDraft, Start, Turn};
 use recrash_model::surroundings::Surface;
-use recrash_roads::Scenario;
+use recrash_roads::{Scenario, background_traffic};
 use recrash_sim::{
     CastMember, Controls, Ego, EgoDriver, Observation, RolloutRecorder, Runner, SummaryRecorder, simulate,
 };
@@ -138,6 +138,23 @@ fn another_traffic_seed_is_another_traffic() {
     };
     assert_eq!(with_seed(1), with_seed(1));
     assert_ne!(with_seed(1), with_seed(2));
+}
+
+/// One timer for all would have all of them overtake in the same step, in both simulators: their parity could not tell it.
+#[test]
+fn every_vehicle_of_background_traffic_has_an_overtaking_timer_of_its_own() {
+    let timers = |seed| {
+        let mut draft = alone(roundabout(2), Turn::Straight, 1, 7.0, 7.0);
+        (draft.traffic.density, draft.traffic.seed) = (0.3, seed);
+        let placed = background_traffic(&checked(draft));
+        placed.iter().map(|vehicle| vehicle.overtake_timer_steps).collect::<Vec<_>>()
+    };
+    let mut drawn = timers(3);
+    assert!(drawn.len() >= 8 && drawn.iter().all(|steps| *steps < 50), "{drawn:?}");
+    assert_ne!(drawn, timers(4));
+    drawn.sort_unstable();
+    drawn.dedup();
+    assert!(drawn.len() >= 6, "{drawn:?}");
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Small convex polygons on the stack: cut by half-planes, area and centroid.
 
-use recrash_model::geometry::{OrientedBox, Vec2};
+use crate::geometry::{OrientedBox, Vec2};
 
 /// A box cut by eight half-planes has twelve corners at most.
 const CAPACITY: usize = 16;
@@ -81,7 +81,7 @@ impl ConvexPolygon {
         Some(sum * (1.0 / self.len as f64))
     }
 
-    /// A corner that would not fit is left out: it cannot happen with the cuts of this crate, and must not panic.
+    /// A corner that would not fit is left out: it cannot happen with eight cuts of a box, and must not panic.
     fn push(&mut self, corner: Vec2) {
         if self.len < CAPACITY {
             self.corners[self.len] = corner;
@@ -93,8 +93,8 @@ impl ConvexPolygon {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use recrash_model::geometry::Pose;
-    use recrash_model::math;
+    use crate::geometry::Pose;
+    use crate::math;
 
     fn boxed(x: f64, y: f64, heading: f64, length: f64, width: f64) -> OrientedBox {
         OrientedBox::new(Pose { position: Vec2::new(x, y), heading }, length, width)
