@@ -58,7 +58,7 @@ fn lint(_: &mut Tally) -> Result {
     cargo(&["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"], &[])?;
     // Without language models: a build that docs/language-models.md offers. The rest as before, so that only what differs is read again.
     let without_live = ["--no-default-features", "--features", "recrash-cli/parquet"];
-    cargo(&[&["clippy", "--workspace", "--all-targets"], &without_live[..], &["--", "-D", "warnings"]].concat(), &[])
+    cargo(&[&["clippy", "--workspace", "--lib", "--bins"], &without_live[..], &["--", "-D", "warnings"]].concat(), &[])
 }
 
 /// What tests need and cargo does not bring: `.venv`, a Python with MetaDrive, and what drives the browser.

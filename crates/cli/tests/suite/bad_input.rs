@@ -1,6 +1,6 @@
 //! What the command says when it is given something it cannot use: what, where and how to mend, and the exit code.
 
-use crate::common::recrash;
+use crate::common::{few, recrash};
 use recrash_records::SAMPLE_CSV;
 use std::path::{Path, PathBuf};
 
@@ -103,11 +103,12 @@ fn a_crash_file_without_a_needed_column() {
 #[test]
 fn rows_with_too_many_or_too_few_fields_are_named_and_the_rest_goes_on() {
     let case = Case::new();
-    let text = format!("{}too,few,fields\n{}\n", ensure_line_end(SAMPLE_CSV), "x,".repeat(142));
+    let few = std::fs::read_to_string(few()).unwrap();
+    let text = format!("{}too,few,fields\n{}\n", ensure_line_end(&few), "x,".repeat(142));
     let (code, shown) = case.records(&case.file("ragged.csv", &text));
     assert_eq!(code, 0, "{shown}");
     let other = Case::new();
-    let (_, clean) = other.records(&other.file("clean.csv", SAMPLE_CSV));
+    let (_, clean) = other.records(&other.file("clean.csv", &few));
     let rows = rows_of(&clean);
     assert_eq!(rows_of(&shown), rows + 2);
     assert_says(&shown, &[&format!("row {}", rows + 1), &format!("row {}", rows + 2), "2 malformed row"]);

@@ -143,7 +143,7 @@ fn a_report_right_after_an_edit_of_a_tuned_file_is_refused_and_shows_no_old_run(
 fn a_suite_of_other_records_or_of_another_profile_is_replaced_only_when_told() {
     let sample = ["run", "--quiet", "--budget", "3", "--tune-budget", "4"];
     let place = Place::made(&sample);
-    std::fs::write(place.path("mine.csv"), recrash_records::SAMPLE_CSV).unwrap();
+    std::fs::copy(FEW, place.path("mine.csv")).unwrap();
     let profile = include_str!("../../../../profiles/paper.toml").replace("name = \"paper\"", "name = \"other\"");
     std::fs::write(place.path("other.toml"), profile).unwrap();
     let saved = std::fs::read(place.path("suite/suite.json")).unwrap();
@@ -159,7 +159,7 @@ fn a_suite_of_other_records_or_of_another_profile_is_replaced_only_when_told() {
     let (code, _, error) = place.run(&sample);
     assert_eq!(code, 2, "{error}");
     // A second file beside the first is welcome.
-    std::fs::write(place.path("more.csv"), recrash_records::SAMPLE_CSV).unwrap();
+    std::fs::copy(FEW, place.path("more.csv")).unwrap();
     run(&place, &[&sample[..], &["--records", "mine.csv", "--records", "more.csv"]].concat());
 }
 

@@ -4,7 +4,7 @@
 //
 //   node check.mjs REPORT.html [--screenshot OUT.png [--at ADDRESS] [--size WIDTHxHEIGHT]] [--chromium PATH]
 //
-// ADDRESS is a place on the page, such as case-03-intersection-straight-left~tuning; a replay is shown as it opens.
+// ADDRESS is a place on the page, such as case-intersection-straight-left-90101-439~tuning; a replay is shown as it opens.
 //
 // Exit: 0 all is well; 1 a check failed; 2 it could not be run.
 
