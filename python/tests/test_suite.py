@@ -15,21 +15,20 @@ import recrash
 from recrash import InputError, RecrashError, Suite
 
 SAMPLE = Path(__file__).parents[2] / "crates" / "records" / "data" / "sample.csv"
-OPTIONS: dict[str, Any] = {"budget": 3, "tune_budget": 2, "seed": 5}
-
-
-@pytest.fixture(scope="module", autouse=True)
-def few_records(tmp_path_factory):
-    """The first rows of the sample: to stage it whole takes ten times as long."""
-    few = tmp_path_factory.mktemp("records") / "few.csv"
-    with SAMPLE.open(encoding="utf-8", newline="") as all_rows, few.open("w", encoding="utf-8", newline="") as file:
-        csv.writer(file).writerows(row for number, row in enumerate(csv.reader(all_rows)) if number <= 60)
-    OPTIONS["files"] = few
 
 
 @pytest.fixture(scope="module")
-def suite(tmp_path_factory):
-    return recrash.run(tmp_path_factory.mktemp("suite") / "made", progress=False, **OPTIONS)
+def options(tmp_path_factory) -> dict[str, Any]:
+    """Of a small suite of the first rows of the sample: to stage it whole takes ten times as long."""
+    few = tmp_path_factory.mktemp("records") / "few.csv"
+    with SAMPLE.open(encoding="utf-8", newline="") as all_rows, few.open("w", encoding="utf-8", newline="") as file:
+        csv.writer(file).writerows(row for number, row in enumerate(csv.reader(all_rows)) if number <= 60)
+    return {"files": few, "budget": 3, "tune_budget": 2, "seed": 5}
+
+
+@pytest.fixture(scope="module")
+def suite(options, tmp_path_factory):
+    return recrash.run(tmp_path_factory.mktemp("suite") / "made", progress=False, **options)
 
 
 def test_a_suite_is_made_and_opened(suite):
@@ -48,7 +47,7 @@ def test_an_ego_is_tested_in_a_suite_and_nothing_in_the_folder_changes(suite):
     assert {file: file.read_bytes() for file in suite.folder.rglob("*") if file.is_file()} == before
 
 
-def test_progress_is_told_and_ctrl_c_keeps_what_is_done(tmp_path):
+def test_progress_is_told_and_ctrl_c_keeps_what_is_done(options, tmp_path):
     told = []
 
     def stops(stage, units, begins):
@@ -57,46 +56,46 @@ def test_progress_is_told_and_ctrl_c_keeps_what_is_done(tmp_path):
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        recrash.run(tmp_path / "s", progress=stops, **OPTIONS)
+        recrash.run(tmp_path / "s", progress=stops, **options)
     stages = {stage for stage, _, begins in told if begins}
     assert {"records", "design", "tune"} <= stages
     assert "report" not in stages
     # Nothing is half written, and the same call goes on to the same end.
     for file in (tmp_path / "s").rglob("*.json"):
         json.loads(file.read_text())
-    resumed = recrash.run(tmp_path / "s", progress=False, **OPTIONS)
-    fresh = recrash.run(tmp_path / "t", progress=False, **OPTIONS)
+    resumed = recrash.run(tmp_path / "s", progress=False, **options)
+    fresh = recrash.run(tmp_path / "t", progress=False, **options)
     assert resumed.summary["cases"] == fresh.summary["cases"]
 
 
-def test_a_slow_listener_hears_progress_to_its_end(tmp_path):
+def test_a_slow_listener_hears_progress_to_its_end(options, tmp_path):
     begun, advanced = Counter(), Counter()
 
     def listens(stage, units, begins):
         time.sleep(0.02)
         (begun if begins else advanced)[stage] += units
 
-    recrash.run(tmp_path / "s", progress=listens, **OPTIONS)
+    recrash.run(tmp_path / "s", progress=listens, **options)
     assert "report" in begun
     assert +advanced == +begun
 
 
-def test_a_listener_that_raises_stops_the_run_with_what_it_raised(tmp_path):
+def test_a_listener_that_raises_stops_the_run_with_what_it_raised(options, tmp_path):
     def breaks(*_):
         raise LookupError("bar")
 
     with pytest.raises(LookupError, match="bar"):
-        recrash.run(tmp_path / "s", progress=breaks, **OPTIONS)
+        recrash.run(tmp_path / "s", progress=breaks, **options)
 
 
-def test_a_folder_without_a_suite_is_told(tmp_path):
+def test_a_folder_without_a_suite_is_told(options, tmp_path):
     with pytest.raises(InputError, match="no suite in .*check the folder"):
         Suite.open(tmp_path)
     with pytest.raises(InputError, match="holds no scenario file"):
         recrash.load_scenarios(tmp_path)
     (tmp_path / "mine.txt").write_text("notes")
     with pytest.raises(RecrashError, match="not overwritten"):
-        recrash.run(tmp_path, progress=False, **OPTIONS)
+        recrash.run(tmp_path, progress=False, **options)
 
 
 def test_a_suite_of_another_version_is_told(suite, tmp_path):
@@ -106,13 +105,13 @@ def test_a_suite_of_another_version_is_told(suite, tmp_path):
         Suite.open(tmp_path)
 
 
-def test_options_that_there_are_not_and_cannot_be_are_told(tmp_path):
+def test_options_that_there_are_not_and_cannot_be_are_told(options, tmp_path):
     with pytest.raises(InputError, match='no option "budgte"; there are: .*budget'):
         recrash.run(tmp_path / "s", budgte=3)
     with pytest.raises(InputError, match="cannot be used"):
         recrash.run(tmp_path / "s", budget="many")
     with pytest.raises(InputError, match='no stage "desing"'):
-        recrash.run(tmp_path / "s", until="desing", **OPTIONS)
+        recrash.run(tmp_path / "s", until="desing", **options)
     assert not (tmp_path / "s").exists()
 
 

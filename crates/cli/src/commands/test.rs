@@ -256,12 +256,16 @@ fn show_causes(results: &TestResults) {
         return;
     }
     output::title("Causes: one finding each");
-    let mut rows = table(&["cause", "tests", "largest delta-v", "shortest example"]);
+    let mut rows = table(&["cause", "tests", "worst delta-v", "shortest example"]);
     for group in groups {
         rows.add_row([
             Cell::new(group.cause.map_or("no rule holds", |cause| cause.label())),
             number(group.tests.len()),
-            number(format!("{:.1} m/s", group.worst_delta_v_mps)),
+            number(
+                Some(group.worst_delta_v_mps)
+                    .filter(|worst| *worst > 0.0)
+                    .map_or("-".to_owned(), |worst| format!("{worst:.1} m/s")),
+            ),
             Cell::new(group.example),
         ]);
     }

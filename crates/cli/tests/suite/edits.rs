@@ -98,7 +98,7 @@ fn an_edited_case_that_leaves_the_suite_leaves_its_edit_there() {
     let place = Place::made(&THREE);
     let all = files(&place, "4-scenarios");
     let edited: Vec<Vec<u8>> = all.iter().map(|file| edit(file, "/ego/target_speed_mps", slower(file))).collect();
-    let (code, _, error) = place.run(&[&["run", "--budget", "1"], &THREE[2..4], &THREE[6..]].concat());
+    let (code, _, error) = place.run(&["run", "--records", FEW, "--budget", "1", "--tune-budget", "4"]);
     assert_eq!(code, 0, "{error}");
     for (file, bytes) in all.iter().zip(&edited) {
         assert_eq!(&std::fs::read(file).unwrap(), bytes, "{}", file.display());

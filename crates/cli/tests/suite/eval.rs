@@ -28,7 +28,8 @@ fn files(labels: &[&str]) -> Files {
 
 fn eval(files: &Files, more: &[&str]) -> std::process::Output {
     let (records, labels) = (files.records.to_str().unwrap(), files.labels.to_str().unwrap());
-    recrash(&["eval", "--agent", "rules", "--records", records, "--labels", labels]).args(more).output().unwrap()
+    let agent = if more.contains(&"--agent") { &[][..] } else { &["--agent", "rules"] };
+    recrash(&["eval", "--records", records, "--labels", labels]).args(agent).args(more).output().unwrap()
 }
 
 fn json(output: &std::process::Output) -> Value {

@@ -12,11 +12,12 @@ use std::sync::{Arc, OnceLock};
 use std::time::{Duration, Instant};
 
 /// Designs of the script; all fit what the model reads.
-const DESIGNS: u64 = 6;
-const OPTIONS: [&str; 10] = ["--records", FEW, "--budget", "6", "--rounds", "1", "--tune-budget", "4", "--seed", "5"];
-/// The same, where the model tunes as well.
-const TUNED: [&str; 12] =
-    ["--records", FEW, "--tune", "scripted", "--budget", "6", "--rounds", "1", "--tune-budget", "4", "--seed", "5"];
+const DESIGNS: u64 = 8;
+const OPTIONS: [&str; 10] = ["--records", FEW, "--budget", "8", "--rounds", "1", "--tune-budget", "4", "--seed", "5"];
+/// The same without the records, where the model tunes as well.
+const TUNED: [&str; 10] = ["--tune", "scripted", "--budget", "8", "--rounds", "1", "--tune-budget", "4", "--seed", "5"];
+/// The records.
+const FROM: [&str; 2] = ["--records", FEW];
 
 /// The model, with the rules' suite made once for all tests.
 fn model() -> Arc<ScriptedModel> {
@@ -52,8 +53,8 @@ impl Folder {
 
 fn run(server: &Server, out: &Path, extra: &[&str]) -> Output {
     let arguments = ["run", "--agent", "scripted", "--base-url", &server.base_url, "--out", out.to_str().unwrap()];
-    let tuned = if extra.contains(&"--records") { &TUNED[2..] } else { &TUNED };
-    recrash(&arguments).args(tuned).args(["--concurrency", "2"]).args(extra).output().unwrap()
+    let from = if extra.contains(&"--records") { &[][..] } else { &FROM };
+    recrash(&arguments).args(from).args(TUNED).args(["--concurrency", "2"]).args(extra).output().unwrap()
 }
 
 pub(super) fn shown(output: &Output) -> String {
@@ -118,6 +119,12 @@ fn good_answers_are_taken_and_replay_gives_the_same_bytes_without_a_network() {
         assert!(exchange["latency_s"].as_f64().unwrap() >= 0.0 && exchange["prompts"].as_str().unwrap().len() == 64);
     }
 
+    // Among the designs that it answered are one with things on the road, and one on a circle.
+    let scenarios: Vec<Value> =
+        files_below(&folder.suite().join("4-scenarios")).iter().map(|file| read(file)).collect();
+    assert!(scenarios.iter().any(|scenario| scenario["obstacles"].as_array().is_some_and(|things| !things.is_empty())));
+    assert!(scenarios.iter().any(|scenario| scenario["map"]["type"] == "O"));
+
     // What `prompt` shows is what was sent.
     for role in ["paraphrase", "design"] {
         let output = recrash(&["prompt", role, "--json", "--out", folder.suite().to_str().unwrap()]).output().unwrap();
@@ -139,7 +146,7 @@ fn good_answers_are_taken_and_replay_gives_the_same_bytes_without_a_network() {
     let arguments =
         ["run", "--agent", "scripted", "--llm", "replay", "--out", again.suite().to_str().unwrap()].map(str::to_owned);
     let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
-    recrash(&arguments).args(TUNED).assert().success();
+    recrash(&arguments).args(FROM).args(TUNED).assert().success();
     for file in files_below(&folder.suite()) {
         let name = file.strip_prefix(folder.suite()).unwrap();
         // The order in which units were done is of this disk.
@@ -323,7 +330,7 @@ fn an_address_where_nobody_answers_stops_the_run() {
     let nobody = std::net::TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap();
     let base_url = format!("http://{nobody}/v1");
     let arguments = ["run", "--quiet", "--agent", "m", "--retries", "0", "--base-url", &base_url, "--out"];
-    let output = recrash(&arguments).arg(folder.suite()).args(TUNED).output().unwrap();
+    let output = recrash(&arguments).arg(folder.suite()).args(FROM).args(TUNED).output().unwrap();
     assert_eq!(output.status.code(), Some(3));
     assert!(shown(&output).contains("cannot connect"), "{}", shown(&output));
 }
@@ -333,7 +340,7 @@ fn a_missing_key_is_named() {
     let folder = Folder::new();
     let arguments = ["run", "--quiet", "--agent", "claude-haiku-4-5", "--out"];
     let mut command = recrash(&arguments);
-    command.arg(folder.suite()).args(TUNED).env_remove("ANTHROPIC_API_KEY").env_remove("RECRASH_BASE_URL");
+    command.arg(folder.suite()).args(FROM).args(TUNED).env_remove("ANTHROPIC_API_KEY").env_remove("RECRASH_BASE_URL");
     let output = command.output().unwrap();
     assert_eq!(output.status.code(), Some(3));
     assert!(shown(&output).contains("ANTHROPIC_API_KEY"), "{}", shown(&output));
@@ -373,7 +380,7 @@ fn a_cap_on_money_holds_with_the_users_prices() {
     // Every answer costs 0.2 USD.
     let arguments =
         ["run", "--agent", "scripted", "--base-url", &server.base_url, "--prices", prices.to_str().unwrap(), "--out"];
-    let output = recrash(&arguments).arg(folder.suite()).args(TUNED).args(capped).output().unwrap();
+    let output = recrash(&arguments).arg(folder.suite()).args(FROM).args(TUNED).args(capped).output().unwrap();
     assert_eq!(output.status.code(), Some(4), "{}", shown(&output));
     assert_eq!(server.requests().len(), 3);
 
@@ -417,7 +424,7 @@ fn no_key_is_in_any_file_line_or_error() {
     let fatal = Server::start(|request| Reply::Status(401, String::new(), format!("refused: {}", request.head)));
     for (server, out) in [(&server, folder.suite()), (&fatal, folder.0.path().join("refused"))] {
         let arguments = ["run", "--agent", "scripted", "--base-url", &server.base_url, "--out", out.to_str().unwrap()];
-        outputs.push(recrash(&arguments).args(TUNED).envs(KEYS).output().unwrap());
+        outputs.push(recrash(&arguments).args(FROM).args(TUNED).envs(KEYS).output().unwrap());
     }
     assert!(server.requests().iter().all(|r| r.head.contains(KEYS[0].1)), "the key of the server is sent");
     assert!(!server.requests().iter().any(|r| r.head.contains(KEYS[1].1)), "the key of another provider is not");
@@ -445,6 +452,7 @@ fn an_interrupt_keeps_every_answer_and_says_how_to_go_on() {
     command
         .args(["run", "--agent", "scripted", "--base-url", &server.base_url, "--out"])
         .arg(folder.suite())
+        .args(FROM)
         .args(TUNED);
     let child = command.args(["--concurrency", "2"]).stderr(std::process::Stdio::piped()).spawn().unwrap();
     let begun = Instant::now();
@@ -568,6 +576,7 @@ fn a_cap_on_tokens_holds_where_the_server_does_not_count() {
     });
     let output = recrash(&["run", "--quiet", "--agent", "scripted", "--base-url", &server.base_url, "--out"])
         .arg(folder.suite())
+        .args(FROM)
         .args(TUNED)
         .args(["--max-tokens", "40000", "--concurrency", "1"])
         .output()
@@ -602,7 +611,7 @@ fn a_missing_key_of_a_later_role_is_told_before_the_first_question() {
     let folder = Folder::new();
     let arguments = ["run", "--quiet", "--paraphrase", "no-such-model", "--design", "claude-haiku-4-5", "--out"];
     let mut command = recrash(&arguments);
-    command.arg(folder.suite()).args(TUNED).env_remove("ANTHROPIC_API_KEY").env_remove("RECRASH_BASE_URL");
+    command.arg(folder.suite()).args(FROM).args(TUNED).env_remove("ANTHROPIC_API_KEY").env_remove("RECRASH_BASE_URL");
     let output = command.output().unwrap();
     assert_eq!(output.status.code(), Some(3));
     assert!(shown(&output).contains("ANTHROPIC_API_KEY"), "{}", shown(&output));

@@ -19,7 +19,7 @@ fn a_model_reads_what_the_built_in_reader_did_not_read_whole() {
     assert!(output.status.success(), "{}", shown(&output));
     // How many and at which price is said before the first question; only those are asked about.
     let told = shown(&output);
-    assert!(told.contains(" of 47 readable incidents (") && told.contains("at a price that is not known"), "{told}");
+    assert!(told.contains(" of 49 readable incidents (") && told.contains("at a price that is not known"), "{told}");
     let readers = read(&out.join("1-accounts.agents.json"));
     let asked = readers.as_object().unwrap().len();
     assert!((1..20).contains(&asked), "{asked}");

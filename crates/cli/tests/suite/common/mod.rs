@@ -8,11 +8,13 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, Once, OnceLock};
 
-/// A crash file with the first rows of the built-in sample, and with [`UNREAD`]. To stage the whole sample takes ten times as long: what is
+/// A crash file with the first rows of the built-in sample, with [`UNREAD`] and [`GROUNDS`]. To stage the whole sample takes ten times as long: what is
 /// not about all of its incidents is tested on these.
 pub const FEW: &str = concat!(env!("CARGO_TARGET_TMPDIR"), "/few.csv");
 /// A pickup that backed out of its space; the built-in reader does not say who struck whom.
 pub const UNREAD: &str = "90101-251";
+/// A crash beside things in a work zone, and one on a circle.
+pub const GROUNDS: [&str; 2] = ["90106-197", "90101-342"];
 /// Makes a small suite that goes by templates.
 pub const SMALL: [&str; 8] = ["run", "--quiet", "--records", FEW, "--budget", "2", "--tune-budget", "4"];
 /// Makes one that goes by accounts.
@@ -42,7 +44,7 @@ pub fn few() -> &'static Path {
     // Whole or not at all: the tests of another process may read it.
     WRITTEN.call_once(|| {
         let fresh = tempfile::NamedTempFile::new_in(env!("CARGO_TARGET_TMPDIR")).unwrap();
-        write_rows(fresh.path(), |number, report| number < 60 || report == UNREAD);
+        write_rows(fresh.path(), |number, report| number < 60 || report == UNREAD || GROUNDS.contains(&report));
         fresh.persist(FEW).unwrap();
     });
     Path::new(FEW)
