@@ -129,6 +129,9 @@ fn test_case(
     run: Option<&RunRow>,
     name: &str,
 ) -> std::io::Result<()> {
+    // The triage is about the last run.
+    let is_last = name == case.last_name();
+    let triage = case.triage.as_ref().filter(|_| is_last);
     let time = run.and_then(|run| fixed(run.metrics.duration_s, 3)).unwrap_or_else(|| "0".to_owned());
     let class = format!("recrash.{}.{}", suite.profile.name, name.replace(' ', "-"));
     let element = writer.create_element("testcase").with_attributes(attributes(&[
@@ -146,8 +149,7 @@ fn test_case(
             let failures: Vec<_> = run.findings.iter().filter(|finding| finding.kind.is_failure()).collect();
             let kinds: Vec<_> = failures.iter().map(|finding| finding.kind.label()).collect();
             let sentences: Vec<_> = failures.iter().map(|finding| safe(&finding.sentence)).collect();
-            let is_last = case.is_last(run);
-            let class = triage_of(case, run).map_or_else(String::new, |t| format!(" ({})", t.class.label()));
+            let class = triage.map_or_else(String::new, |t| format!(" ({})", t.class.label()));
             let harm = run.severity.as_ref().and_then(|severity| fixed(severity.harm_mps(), 1));
             let harm = harm.map_or_else(String::new, |harm| format!(", largest delta-v {harm} m/s"));
             let struck = if struck_standing(run) { ", struck while it stood" } else { "" };
@@ -158,7 +160,7 @@ fn test_case(
             let failure = failure.with_attributes(attributes(&[("type", kind), ("message", &message)]));
             failure.write_text_content(BytesText::new(&sentences.join("\n")))?;
         }
-        writer.create_element("system-out").write_text_content(BytesText::new(&safe(&told(case, run))))?;
+        writer.create_element("system-out").write_text_content(BytesText::new(&safe(&told(case, run, triage))))?;
         Ok(())
     })?;
     Ok(())
@@ -172,13 +174,8 @@ pub(crate) fn attributes<'a>(pairs: &[(&'a str, &str)]) -> Vec<Attribute<'a>> {
     };
     pairs.iter().map(attribute).collect()
 }
-/// The triage, which is about the last run.
-fn triage_of<'a>(case: &'a CaseRow, run: &RunRow) -> Option<&'a Triage> {
-    case.triage.as_ref().filter(|_| case.is_last(run))
-}
-
 /// What a person reads when the test has failed.
-fn told(case: &CaseRow, run: &RunRow) -> String {
+fn told(case: &CaseRow, run: &RunRow, triage: Option<&Triage>) -> String {
     let gap = run
         .min_gap_m()
         .and_then(|gap| fixed(gap, 2))
@@ -204,7 +201,7 @@ fn told(case: &CaseRow, run: &RunRow) -> String {
             .map_or_else(String::new, |risk| format!("; serious injury: {} %", number(100.0 * risk)));
         format!("\ndelta-v: ego {ego} m/s, {} {other} m/s{risk}", severity.other())
     });
-    let others = triage_of(case, run).map_or_else(String::new, |triage| {
+    let others = triage.map_or_else(String::new, |triage| {
         format!(
             "\nother egos in the same scenario: {}, {} ({})",
             triage.class.label(),

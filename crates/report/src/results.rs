@@ -109,11 +109,12 @@ fn row(suite: &SuiteView, case: &CaseRow, name: &str, run: Option<&RunRow>) -> V
         suite.seed.to_string(),
     ];
     match run {
-        Some(run) => row.extend(measured(case, run)),
+        // By accounts the recorded driver's run is held against the record, by templates each.
+        Some(run) => row.extend(measured(case, run, case.account.is_none() || name == case.names().before)),
         None => row.extend(std::iter::repeat_n(String::new(), 26)),
     }
     // The triage is about the last run.
-    let is_last = run.is_some_and(|run| case.is_last(run));
+    let is_last = run.is_some() && name == case.last_name();
     let triage = case.triage.as_ref().filter(|_| is_last);
     row.push(triage.map_or_else(String::new, |triage| triage.class.label().to_owned()));
     row.push(triage.map_or_else(String::new, other_egos));
@@ -153,9 +154,8 @@ pub fn other_egos(triage: &Triage) -> String {
     told.collect::<Vec<_>>().join("; ")
 }
 
-fn measured(case: &CaseRow, run: &RunRow) -> Vec<String> {
+fn measured(case: &CaseRow, run: &RunRow, tells: bool) -> Vec<String> {
     let m = &run.metrics;
-    let tells = case.account.is_none() || case.is_telling(run);
     let number = |value: Option<f64>| value.and_then(|value| fixed(value, 3)).unwrap_or_default();
     let worst = |of: fn(&PartnerMetrics) -> Option<Timed>| m.partners.iter().filter_map(of).map(|timed| timed.value);
     let least = |of| number(worst(of).min_by(f64::total_cmp));

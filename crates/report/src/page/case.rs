@@ -135,8 +135,10 @@ pub(super) fn stage(runs: &[(&str, String, bool)], reference: bool) -> Markup {
                             button type="button" data-camera=(value) aria-pressed=(value == "fit") { (name) }
                         }
                     }
-                    button.small type="button" data-act="zoom-out" title="Zoom out ( \u{2212} )" aria-label="Zoom out" { (icon::minus()) }
-                    button.small type="button" data-act="zoom-in" title="Zoom in ( + )" aria-label="Zoom in" { (icon::plus()) }
+                    .zoom {
+                        button.small type="button" data-act="zoom-out" title="Zoom out ( \u{2212} )" aria-label="Zoom out" { (icon::minus()) }
+                        button.small type="button" data-act="zoom-in" title="Zoom in ( + )" aria-label="Zoom in" { (icon::plus()) }
+                    }
                 }
                 .views tabindex="0" role="img" aria-label="Top-down picture of the run; the plots and tables hold the same in numbers" {
                     @for (run, name, _) in runs { figure.view data-run=(run) hidden { canvas {} figcaption { (name) } } }
