@@ -4,7 +4,7 @@ use crate::embedding::EmbeddingKind;
 use crate::error::PipelineError;
 use crate::files::paths::quoted;
 use crate::models::cast::Cast;
-use crate::profiles::load_profile;
+use crate::profiles::{DEFAULT_PROFILE, load_profile};
 use crate::simulators::SimulatorKind;
 use recrash_model::profile::{Dedupe, SystemProfile};
 use recrash_model::selection::{Strategy, Weighting};
@@ -104,7 +104,7 @@ impl Default for Options {
             dedupe: None,
             filter: None,
             mapping: None,
-            profile: "open".into(),
+            profile: DEFAULT_PROFILE.into(),
             budget: Some(20),
             invent: false,
             strategy: Strategy::Stratified,

@@ -8,6 +8,9 @@ use std::path::Path;
 const BUILT_IN: [(&str, &str); 2] =
     [("open", include_str!("../../../profiles/open.toml")), ("paper", include_str!("../../../profiles/paper.toml"))];
 
+/// The profile where nobody names one.
+pub const DEFAULT_PROFILE: &str = BUILT_IN[0].0;
+
 /// Names of the built-in profiles.
 pub const PROFILE_NAMES: [&str; 2] = [BUILT_IN[0].0, BUILT_IN[1].0];
 

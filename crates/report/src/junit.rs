@@ -146,7 +146,7 @@ fn test_case(
             let failures: Vec<_> = run.findings.iter().filter(|finding| finding.kind.is_failure()).collect();
             let kinds: Vec<_> = failures.iter().map(|finding| finding.kind.label()).collect();
             let sentences: Vec<_> = failures.iter().map(|finding| safe(&finding.sentence)).collect();
-            let is_last = case.last_run().is_some_and(|last| std::ptr::eq(run, last));
+            let is_last = case.is_last(run);
             let class = triage_of(case, run).map_or_else(String::new, |t| format!(" ({})", t.class.label()));
             let harm = run.severity.as_ref().and_then(|severity| fixed(severity.harm_mps(), 1));
             let harm = harm.map_or_else(String::new, |harm| format!(", largest delta-v {harm} m/s"));
@@ -174,7 +174,7 @@ pub(crate) fn attributes<'a>(pairs: &[(&'a str, &str)]) -> Vec<Attribute<'a>> {
 }
 /// The triage, which is about the last run.
 fn triage_of<'a>(case: &'a CaseRow, run: &RunRow) -> Option<&'a Triage> {
-    case.triage.as_ref().filter(|_| case.last_run().is_some_and(|last| std::ptr::eq(run, last)))
+    case.triage.as_ref().filter(|_| case.is_last(run))
 }
 
 /// What a person reads when the test has failed.

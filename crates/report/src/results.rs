@@ -113,7 +113,7 @@ fn row(suite: &SuiteView, case: &CaseRow, name: &str, run: Option<&RunRow>) -> V
         None => row.extend(std::iter::repeat_n(String::new(), 26)),
     }
     // The triage is about the last run.
-    let is_last = run.is_some_and(|run| case.last_run().is_some_and(|last| std::ptr::eq(run, last)));
+    let is_last = run.is_some_and(|run| case.is_last(run));
     let triage = case.triage.as_ref().filter(|_| is_last);
     row.push(triage.map_or_else(String::new, |triage| triage.class.label().to_owned()));
     row.push(triage.map_or_else(String::new, other_egos));
@@ -155,7 +155,7 @@ pub fn other_egos(triage: &Triage) -> String {
 
 fn measured(case: &CaseRow, run: &RunRow) -> Vec<String> {
     let m = &run.metrics;
-    let tells = case.account.is_none() || case.telling_run().is_some_and(|told| std::ptr::eq(run, told));
+    let tells = case.account.is_none() || case.is_telling(run);
     let number = |value: Option<f64>| value.and_then(|value| fixed(value, 3)).unwrap_or_default();
     let worst = |of: fn(&PartnerMetrics) -> Option<Timed>| m.partners.iter().filter_map(of).map(|timed| timed.value);
     let least = |of| number(worst(of).min_by(f64::total_cmp));

@@ -235,6 +235,11 @@ impl CaseRow {
         self.after.as_ref().or(self.before.as_ref().filter(|_| self.account.is_none()))
     }
 
+    /// Whether a run is the one that counts.
+    pub fn is_last(&self, run: &RunRow) -> bool {
+        self.last_run().is_some_and(|last| last.id == run.id)
+    }
+
     /// The run of the system under test before tuning: in the scenario as designed, or in the crash as reconstructed.
     pub fn first_run(&self) -> Option<&RunRow> {
         match self.account {
@@ -282,6 +287,11 @@ impl CaseRow {
     /// The run that is held against the record.
     pub fn telling_run(&self) -> Option<&RunRow> {
         if self.account.is_some() { self.before.as_ref() } else { self.last_run() }
+    }
+
+    /// Whether a run is held against the record.
+    pub fn is_telling(&self, run: &RunRow) -> bool {
+        self.telling_run().is_some_and(|told| told.id == run.id)
     }
 
     /// Whether the system under test came into the situation of its record; nothing where that was not looked at.

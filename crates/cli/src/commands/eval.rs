@@ -10,9 +10,9 @@ use std::path::PathBuf;
 
 const EXAMPLES: &str = "\
 Examples:
-  recrash eval                                      the rules on the built-in labels and the downloaded crash files
-  recrash eval --agent reader                       the accounts that suites are made of
+  recrash eval                                      the reader that suites use, on the built-in labels and the downloaded crash files
   recrash eval --half dev                           the developed half alone, with its disagreements
+  recrash eval --agent rules                        the rules of the paper's templates, on labels of their own
   recrash eval --records archive.csv --records current.csv --json
   recrash eval --agent gpt-5-mini --out eval-mini   a model, with its questions and answers in that folder
 
@@ -23,8 +23,8 @@ How fields are compared is in docs/models/evaluation.md.";
 #[derive(Debug, Clone, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct EvalArgs {
-    /// Who reads: rules, reader (the accounts of recrash read), or a language model by name.
-    #[arg(long, value_name = "rules|reader|MODEL", default_value = "rules")]
+    /// Who reads: reader (the accounts of recrash read), rules (those of the paper's templates), or a language model by name.
+    #[arg(long, value_name = "reader|rules|MODEL", default_value = "reader")]
     pub agent: String,
     /// Label file (CSV). [default: the built-in ones: eval/accounts.csv for the reader, else eval/labels.csv]
     #[arg(long, value_name = "FILE")]

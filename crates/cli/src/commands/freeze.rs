@@ -33,7 +33,7 @@ pub struct FreezeArgs {
     /// What `recrash reconstruct --json` printed: incidents and crash types of the scenario files.
     #[arg(long, value_name = "FILE")]
     pub about: Option<PathBuf>,
-    /// Profile that says what a failure is: a built-in name or a TOML file. [default: the suite's, else paper]
+    /// Profile that says what a failure is: a built-in name or a TOML file. [default: the suite's, else open]
     #[arg(long, value_name = "NAME|FILE")]
     pub profile: Option<String>,
     /// Of a suite: the scenarios as tuned.
@@ -57,6 +57,7 @@ pub fn run(args: &FreezeArgs, output: Output) -> Result<(), PipelineError> {
         about: args.about.clone(),
         out: args.out.clone(),
         profile: args.profile.clone(),
+        default_profile: crate::options::defaults().profile,
         tuned: args.tuned,
         narratives: args.with_narratives,
         replace: args.replace,

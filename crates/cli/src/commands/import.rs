@@ -32,7 +32,7 @@ pub struct ImportArgs {
     /// Run it in the native simulator, and show its metrics.
     #[arg(long)]
     pub simulate: bool,
-    /// System under test to run it with. [default: that of the profile paper]
+    /// System under test to run it with. [default: that of the profile open]
     #[arg(long, value_name = "NAME", requires = "simulate")]
     pub ego: Option<String>,
 }

@@ -36,7 +36,7 @@ pub struct RecordsArgs {
     /// Where crash records come from.
     #[command(flatten)]
     pub source: SourceArgs,
-    /// System profile, which decides what is usable: a built-in name or a TOML file. [default: paper]
+    /// System profile, which decides what is usable: a built-in name or a TOML file. [default: open]
     #[arg(long, value_name = "NAME|FILE")]
     pub profile: Option<String>,
     /// Write the usable records as a CSV table.

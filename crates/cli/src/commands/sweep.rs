@@ -36,7 +36,7 @@ pub struct SweepArgs {
     /// Write the scenario of this one rollout instead, as JSON.
     #[arg(long, value_name = "NUMBER")]
     pub rollout: Option<u64>,
-    /// System profile with the failure criteria. [default: the suite's, else paper]
+    /// System profile with the failure criteria. [default: the suite's, else open]
     #[arg(long, value_name = "NAME|FILE")]
     pub profile: Option<String>,
     /// Ego: metadrive-idm, idm, reference, or a program as 'cmd:PROGRAM ARGS'. [default: the suite's, else the profile's]
@@ -62,11 +62,13 @@ pub struct SweepArgs {
 /// The scenario cannot be used, or the file cannot be written.
 pub fn run(args: &SweepArgs, output: Output) -> Result<(), PipelineError> {
     let answer = Duration::from_secs(u64::from(args.ego_timeout));
+    let defaults = crate::options::defaults();
     let sweep = Sweep::prepare(&SweepRequest {
         source: &args.source,
         vary: &args.vary,
         rollouts: args.rollouts,
         profile: args.profile.as_deref(),
+        default_profile: &defaults.profile,
         ego: args.ego.as_deref(),
         patience: Patience { start: 6 * answer, answer },
         seed: args.seed,

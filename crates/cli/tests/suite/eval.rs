@@ -28,7 +28,7 @@ fn files(labels: &[&str]) -> Files {
 
 fn eval(files: &Files, more: &[&str]) -> std::process::Output {
     let (records, labels) = (files.records.to_str().unwrap(), files.labels.to_str().unwrap());
-    recrash(&["eval", "--records", records, "--labels", labels]).args(more).output().unwrap()
+    recrash(&["eval", "--agent", "rules", "--records", records, "--labels", labels]).args(more).output().unwrap()
 }
 
 fn json(output: &std::process::Output) -> Value {
@@ -111,7 +111,7 @@ fn the_rules_read_the_held_out_half_as_well_as_the_documentation_says() {
     let files = ["ads-2021-06-to-2025-06.csv", "ads-2025-06-to-2026-01.csv"].map(|name| shared.join(name));
     let names = files.each_ref().map(|path| path.to_str().unwrap());
     let evaluation =
-        json(&recrash(&["eval", "--json", "--records", names[0], "--records", names[1]]).output().unwrap());
+        json(&recrash(&["eval", "--agent", "rules", "--json", "--records", names[0], "--records", names[1]]).output().unwrap());
     for (field, least) in [
         ("road", 0.95),
         ("approach", 0.85),
@@ -161,7 +161,7 @@ fn the_reader_reads_the_held_out_half_as_well_as_the_documentation_says() {
     let Some(shared) = recrash_testing::shared("data/nhtsa") else { return };
     let files = ["ads-2021-06-to-2025-06.csv", "ads-2025-06-to-2026-01.csv"].map(|name| shared.join(name));
     let names = files.each_ref().map(|path| path.to_str().unwrap());
-    let arguments = ["eval", "--agent", "reader", "--half", "held-out", "--records", names[0], "--records", names[1]];
+    let arguments = ["eval", "--half", "held-out", "--records", names[0], "--records", names[1]];
     let text = recrash(&arguments).output().unwrap();
     let text = String::from_utf8_lossy(&text.stdout).into_owned();
     assert!(text.contains("two readers agree") && text.contains("163/165"), "{text}");

@@ -218,7 +218,7 @@ fn paths_that_are_no_text_work_or_are_refused_with_a_word() {
     }
     let elsewhere: [&[&str]; 7] = [
         &["model", "show", "--python", "odd-python", "--json"],
-        &["eval", "--records", "odd-a.csv", "--labels", "odd-labels", "--out", "odd-eval"],
+        &["eval", "--agent", "rules", "--records", "odd-a.csv", "--labels", "odd-labels", "--out", "odd-eval"],
         &["fetch", "--base-url", "http://127.0.0.1:1", "--cache", "odd-cache"],
         &["ledger", "odd-nowhere"],
         &["parity", "odd-nowhere"],

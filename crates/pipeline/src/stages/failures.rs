@@ -1,6 +1,6 @@
 //! Scenarios that could not be made or run: each is told with its reason, kept in the suite, and the others go on.
 
-use super::summary::RunSummary;
+use super::run_summary::RunSummary;
 use super::{case_stages, unit_name};
 use crate::error::PipelineError;
 use crate::files::store::to_json;

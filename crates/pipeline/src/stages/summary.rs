@@ -1,7 +1,8 @@
 //! What a person is told at the end of a run.
 
 use super::failures::Failure;
-use super::report::Case;
+use super::made::Case;
+use super::run_summary::RunSummary;
 use super::{Cases, DesignLog};
 use crate::models::cast::{AgentLog, Cast, RULES};
 use crate::options::RecordSource;
@@ -10,13 +11,12 @@ use recrash_lab::coverage::{Incident, Tested, coverage};
 use recrash_model::account::{AccountSet, CrashType, FactShare, TypeShare, Untold};
 use recrash_model::cause::{Cause, Failures};
 use recrash_model::coverage::CorpusCoverage;
-use recrash_model::metrics::{Answer, Check, CheckKind, CheckResult};
+use recrash_model::metrics::{Answer, CheckKind, CheckResult};
 use recrash_model::narrative::Origin;
-use recrash_model::preventability::{Bracket, Preventability};
+use recrash_model::preventability::Bracket;
 use recrash_model::record::{FunnelStep, RecordRef};
 use recrash_model::run::JudgedRun;
 use recrash_model::selection::{Coverage, EmbeddingInfo, StageTables, Strategy, TemplateCount};
-use recrash_model::severity::Severity;
 use recrash_model::template::Template;
 use recrash_model::triage::{FailureClass, Triage};
 use serde::{Deserialize, Serialize};
@@ -200,81 +200,6 @@ pub struct CaseSummary {
     pub failure: Option<Failure>,
     /// Points the search scored.
     pub points: usize,
-}
-
-/// One run in numbers.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct RunSummary {
-    /// Least box gap to a scripted partner. [m]
-    pub min_gap_m: Option<f64>,
-    /// When. [s]
-    pub min_gap_time_s: Option<f64>,
-    /// Least distance of centres to a scripted partner. [m]
-    pub min_centre_distance_m: Option<f64>,
-    /// Contact with a road user: kind of collision.
-    pub contact: Option<String>,
-    /// Change of velocity of the ego and of the other in that contact; where there is none, in that with an obstacle. [m/s]
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub delta_v_mps: Option<[f64; 2]>,
-    /// Probability that it injures somebody seriously, where a published curve covers it.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub serious_injury: Option<f64>,
-    /// What led to the failure.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub cause: Option<Cause>,
-    /// What reference drivers make of the contact.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub preventability: Option<Bracket>,
-    /// Whether the ego failed, by the profile's criteria.
-    pub failed: bool,
-    /// Kinds of findings, each once, failures first.
-    pub findings: Vec<String>,
-    /// Whether it is true to its record.
-    pub faithful: Answer,
-    /// Facts that are not shown: what is told and what was observed.
-    pub unfaithful: Vec<String>,
-    /// Facts that cannot be shown.
-    #[serde(default)]
-    pub unchecked: Vec<String>,
-}
-
-impl RunSummary {
-    pub(crate) fn new(run: &JudgedRun) -> Self {
-        let told = |c: &Check| format!("{}: expected {}, observed {}", c.kind.label(), c.expected, c.observed);
-        Self {
-            min_gap_m: run.metrics.min_gap.map(|gap| gap.value),
-            min_gap_time_s: run.metrics.min_gap.map(|gap| gap.time_s),
-            min_centre_distance_m: run.metrics.min_centre_distance.map(|d| d.value),
-            contact: run.metrics.contact.as_ref().map(|contact| contact.kind.label().to_owned()),
-            delta_v_mps: run
-                .severity
-                .as_ref()
-                .map(|severity| [severity.first.delta_v_mps, severity.second.delta_v_mps]),
-            serious_injury: run.severity.as_ref().and_then(Severity::serious_injury),
-            cause: run.cause,
-            preventability: run.preventability.as_ref().map(Preventability::bracket),
-            failed: run.failed(),
-            findings: run.finding_kinds().iter().map(|kind| kind.label().to_owned()).collect(),
-            faithful: run.faithful(),
-            unfaithful: run.verdict.failures().map(told).collect(),
-            unchecked: run.verdict.unchecked().map(|check| check.kind.label().to_owned()).collect(),
-        }
-    }
-
-    /// Whether it failed by being struck while it stood, which has nothing to do with what it drove.
-    pub fn struck_standing(&self) -> bool {
-        self.failed && self.cause == Some(Cause::StruckStanding)
-    }
-
-    /// What findings are ranked by: the greater change of velocity of the two, of a contact with an obstacle the ego's; 0 without any.
-    /// [m/s]
-    pub fn harm_mps(&self) -> f64 {
-        match (self.delta_v_mps, &self.contact) {
-            (Some([ego, other]), Some(_)) => ego.max(other),
-            (Some([ego, _]), None) => ego,
-            (None, _) => 0.0,
-        }
-    }
 }
 
 /// Runs of the system under test, in numbers.

@@ -1,7 +1,7 @@
 //! The suite as the report sees it.
 
 use super::Cases;
-use super::report::{Case, Ran};
+use super::made::{Case, Ran};
 use super::summary::Summary;
 use crate::files::paths::quoted;
 use crate::options::{Options, RecordSource};

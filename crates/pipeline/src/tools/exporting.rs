@@ -4,17 +4,17 @@ use crate::error::PipelineError;
 use crate::files::output::Outputs;
 use crate::files::paths;
 use crate::files::store::{Store, io};
-use crate::profiles::load_profile;
+use crate::profiles::{DEFAULT_PROFILE, load_profile};
 use crate::reading::scenarios::read_scenario;
 use crate::simulators::external::Patience;
 use crate::simulators::{SimulatorKind, start_simulator};
 use crate::suite::names;
 use crate::suite::{Suite, refuse_untrusted};
 use recrash_export::{ExportFile, ExportOptions, Format, PartnersAs};
-use recrash_lab::run_scenario;
 use recrash_model::diagnostic::{Diagnostic, Location, Severity};
 use recrash_model::selection::Selection;
 use recrash_model::tuning::{Parameter, TuneLog};
+use recrash_roads::Simulator;
 use recrash_sim::Ego;
 use serde::Serialize;
 use std::collections::BTreeSet;
@@ -161,7 +161,7 @@ fn parent(file: &Path) -> PathBuf {
 
 fn sources(source: &Path, trust: bool) -> Result<Vec<ScenarioSource>, PipelineError> {
     let Some(options) = source.is_dir().then(|| Suite::saved_options(source)).transpose()? else {
-        let ego = load_profile("paper")?.ego;
+        let ego = load_profile(DEFAULT_PROFILE)?.ego;
         return Ok(vec![ScenarioSource { path: source.to_owned(), parameters: Vec::new(), ego }]);
     };
     let options = options.ok_or_else(|| {
@@ -193,11 +193,10 @@ fn files_of(
         _ => error.to_string(),
     };
     let (scenario, _) = read_scenario(&source.path).map_err(told)?;
-    let profile = load_profile("paper").map_err(told)?;
     // The crash as it is told, where it is: so another tool shows it too.
     let ego = if scenario.recorded().is_some() { Ego::Recorded.name() } else { &source.ego };
     let native = start_simulator(SimulatorKind::Native, ego, Path::new(""), 1, Patience::default()).map_err(told)?;
-    let rollout = run_scenario(&scenario, &native, &profile, None).map_err(|error| told(error.into()))?.rollout;
+    let rollout = native.run(&scenario).map_err(|error| told(error.into()))?;
     let files = formats.iter().map(|&format| {
         let options = ExportOptions { partners_as, ..ExportOptions::new(format) };
         recrash_export::export(&scenario, Some(&rollout), &source.parameters, &options).map_err(|e| e.to_string())

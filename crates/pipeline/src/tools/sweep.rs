@@ -74,6 +74,8 @@ pub struct SweepRequest<'a> {
     pub rollouts: u64,
     /// Profile with the failure criteria, and the ego where none is named.
     pub profile: Option<&'a str>,
+    /// The profile of scenarios that are no suite's, where none is named.
+    pub default_profile: &'a str,
     /// Ego.
     pub ego: Option<&'a str>,
     /// How long answers of an external ego are waited for.
@@ -153,7 +155,7 @@ impl Sweep {
     /// The file to write cannot be, or is one of those that are read.
     pub fn prepare(request: &SweepRequest) -> Result<Self, PipelineError> {
         let saved = if request.source.is_dir() { Suite::saved_options(request.source)? } else { None };
-        let default = saved.as_ref().map_or("paper", |options| &options.profile);
+        let default = saved.as_ref().map_or(request.default_profile, |options| &options.profile);
         let profile_name = request.profile.unwrap_or(default).to_owned();
         let profile = load_profile(&profile_name)?;
         let saved_ego = saved.as_ref().and_then(|options| options.ego.clone());

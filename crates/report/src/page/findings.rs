@@ -105,7 +105,7 @@ fn harm(run: &RunRow, finding: &Finding) -> Option<f64> {
     let severity = run.severity.as_ref()?;
     let of = if severity.obstacle.is_some() { FindingKind::ObstacleContact } else { FindingKind::Contact };
     let first = run.findings.iter().find(|other| other.kind == of)?;
-    std::ptr::eq(first, finding).then(|| severity.harm_mps())
+    (first == finding).then(|| severity.harm_mps())
 }
 
 fn every(context: &Context) -> Markup {

@@ -9,6 +9,7 @@ use crate::error::PipelineError;
 use crate::files::folders::must_be_free;
 use crate::files::paths;
 use crate::files::store::{Store, io, read_bytes, sha256, to_compact_json, to_json, write_suite_file};
+use crate::profiles::DEFAULT_PROFILE;
 use crate::progress::{Progress, ProgressEvent};
 use crate::suite::SUITE_FILE;
 use crate::tools::freezing::{FROZEN_FILE, FreezeRequest, Opened, freeze};
@@ -184,6 +185,7 @@ fn take_suite(request: &EvidenceRequest, files: &mut Files) -> Result<(), Pipeli
             about: None,
             out: target.clone(),
             profile: None,
+            default_profile: DEFAULT_PROFILE.to_owned(),
             tuned: request.tuned,
             narratives: false,
             replace: false,

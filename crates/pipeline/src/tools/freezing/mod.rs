@@ -31,8 +31,10 @@ pub struct FreezeRequest {
     pub about: Option<PathBuf>,
     /// The folder to make.
     pub out: PathBuf,
-    /// Profile that says what a failure is; the suite's, else `paper`, where none is named.
+    /// Profile that says what a failure is; the suite's where none is named.
     pub profile: Option<String>,
+    /// The profile of scenarios that are no suite's, where none is named.
+    pub default_profile: String,
     /// Of a suite: its scenarios as tuned, in place of those as designed.
     pub tuned: bool,
     /// Whether the text of narratives goes along.

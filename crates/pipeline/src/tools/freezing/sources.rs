@@ -31,7 +31,7 @@ pub(super) struct Gathered {
 
 /// Reads every source.
 pub(super) fn gather(request: &FreezeRequest) -> Result<Gathered, PipelineError> {
-    let mut gathered = Gathered { tests: Vec::new(), profile: "paper".to_owned(), left_out: Vec::new() };
+    let mut gathered = Gathered { tests: Vec::new(), profile: request.default_profile.clone(), left_out: Vec::new() };
     for source in &request.sources {
         if source.join(super::FROZEN_FILE).is_file() {
             let why = "it is a frozen suite already; it is tested as it is, and its folder `scenarios` holds its scenario files";
