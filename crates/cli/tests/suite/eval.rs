@@ -110,8 +110,11 @@ fn the_rules_read_the_held_out_half_as_well_as_the_documentation_says() {
     let Some(shared) = recrash_testing::shared("data/nhtsa") else { return };
     let files = ["ads-2021-06-to-2025-06.csv", "ads-2025-06-to-2026-01.csv"].map(|name| shared.join(name));
     let names = files.each_ref().map(|path| path.to_str().unwrap());
-    let evaluation =
-        json(&recrash(&["eval", "--agent", "rules", "--json", "--records", names[0], "--records", names[1]]).output().unwrap());
+    let evaluation = json(
+        &recrash(&["eval", "--agent", "rules", "--json", "--records", names[0], "--records", names[1]])
+            .output()
+            .unwrap(),
+    );
     for (field, least) in [
         ("road", 0.95),
         ("approach", 0.85),

@@ -65,7 +65,8 @@ impl<'a> Case<'a> {
         let id = &cluster.scenario_id;
         let store = suite.store();
         let failure = failures::before(suite, id, Stage::Report);
-        let made = |stage: Stage| failures::before(suite, id, stage).is_none() && failures::at(suite, id, stage).is_none();
+        let made =
+            |stage: Stage| failures::before(suite, id, stage).is_none() && failures::at(suite, id, stage).is_none();
         let by_account = cases.accounts.is_some();
         let log = made(Stage::Narrate).then(|| store.read_json(&names::narrative_log(id))).transpose()?;
         let narrative = match by_account {
