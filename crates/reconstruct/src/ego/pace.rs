@@ -160,14 +160,6 @@ fn comes_over_line(told: &Told, ground: &Ground, sv_s_m: f64) -> Option<f64> {
 const BEFORE_LINE_M: f64 = 3.0;
 const LEAST_STOOD_S: f64 = 1.2;
 
-impl Told {
-    /// Whether the partner is told to have come up slowly behind an ego that stands: that has stood for long.
-    fn comes_up_slowly(&self) -> bool {
-        let slow = self.cp.manner == Some(Manner::Slow) && self.cp.state == ContactState::Moving;
-        self.origin == Origin::Behind && slow && self.sv.state.stands()
-    }
-}
-
 /// How far somebody has reversed at the contact. [m]
 pub(crate) const REVERSES_M: f64 = 2.5;
 
@@ -230,4 +222,12 @@ fn slows_in_turn(told: &Told, past_line_m: Option<f64>) -> Option<Pace> {
         let go = when(from_s, Deed::Speed { to_mps: most_mps, rate_mps2: GAINS_MPS2 });
         (holds_m > 0.0 && from_s > SEEN_S).then(|| Pace { speed_mps: 0.0, acts: vec![go, brake], driven_m: line_m })
     })
+}
+
+impl Told {
+    /// Whether the partner is told to have come up slowly behind an ego that stands: that has stood for long.
+    fn comes_up_slowly(&self) -> bool {
+        let slow = self.cp.manner == Some(Manner::Slow) && self.cp.state == ContactState::Moving;
+        self.origin == Origin::Behind && slow && self.sv.state.stands()
+    }
 }

@@ -144,16 +144,6 @@ pub(super) fn weaves(told: &Told, track: &ActorTrack, contact_s: f64) -> usize {
     few + ABSURD * absurd.into_iter().filter(|is| *is).count()
 }
 
-impl Told {
-    /// Whether the partner passes so, and is not told to have changed lanes, drifted or entered.
-    fn passes_in_own_lane(&self) -> bool {
-        let aside = |doing: &Doing| doing.is_aside() && !doing.is_pass();
-        let plain = !self.cp.dodges && !self.cp.changed_lanes && !self.comes_along_kerb();
-        let passes = self.cp.movement == Some(Movement::Passing) && self.has_own_lane();
-        passes && plain && !self.cp.acts.iter().any(aside)
-    }
-}
-
 /// Whether somebody that passes and is told to touch with its flank or rear still moves away from the other one as it touches: it would not
 /// rub along it, but have left it.
 pub(super) fn leaves_whom_it_passes(told: &Told, ego: &ActorTrack, track: &ActorTrack, contact_s: f64) -> bool {
@@ -195,4 +185,14 @@ pub(super) fn is_tight(kind: PartnerKind, states: &[ActorState]) -> bool {
 /// Whether it turns on the spot, slides or jumps, as nobody drives.
 pub(super) fn slides(kind: PartnerKind, states: &[ActorState]) -> bool {
     turns(kind, states).any(|(turn, speed_mps)| turn > SLIDES_RAD + most_rad(speed_mps))
+}
+
+impl Told {
+    /// Whether the partner passes so, and is not told to have changed lanes, drifted or entered.
+    fn passes_in_own_lane(&self) -> bool {
+        let aside = |doing: &Doing| doing.is_aside() && !doing.is_pass();
+        let plain = !self.cp.dodges && !self.cp.changed_lanes && !self.comes_along_kerb();
+        let passes = self.cp.movement == Some(Movement::Passing) && self.has_own_lane();
+        passes && plain && !self.cp.acts.iter().any(aside)
+    }
 }

@@ -105,6 +105,24 @@ const BEHIND_M: f64 = 0.0;
 const NEXT_M: f64 = 1.5 * LANE_M + KEEPS_M;
 
 impl Told {
+    /// Whether a partner that is told beside the ego, and in no farther lane, is farther off than the next one.
+    pub(super) fn is_far_beside(&self, ego: &ActorTrack, track: &ActorTrack) -> bool {
+        let (own, other) = (&ego.states[0], &track.states[0]);
+        let aside_m = Vec2::from_heading(own.heading).cross(other.position() - own.position()).abs();
+        let beside = matches!(self.origin, Origin::Beside { .. }) && self.comes_along_lanes();
+        let aside = self.sv_aside().is_some();
+        beside && !aside && (self.cp.lane.is_none() || self.sv.lane.is_none()) && !self.is_at_kerb() && aside_m > NEXT_M
+    }
+
+    /// Whether a partner that is told behind the ego is beside its lane, or ahead of it.
+    pub(super) fn is_beside_line(&self, ego: &ActorTrack, track: &ActorTrack) -> bool {
+        let sets_out = track.states.iter().position(|state| state.velocity().length() > STANDS_MPS).unwrap_or(0);
+        let (own, other) = (&ego.states[sets_out.min(ego.states.len() - 1)], &track.states[sets_out]);
+        let (forward, way) = (Vec2::from_heading(own.heading), other.position() - own.position());
+        let overlap_m = 0.5 * (ego.width_m + track.width_m) - forward.cross(way).abs();
+        self.is_in_line_behind() && (overlap_m < 0.0 || way.dot(forward) > BEHIND_M)
+    }
+
     /// Whether the partner is told to be behind the ego, and nothing tells that it was in another lane then.
     fn is_in_line_behind(&self) -> bool {
         let straight = !matches!(self.sv.turning, Turning::Left | Turning::Right);
@@ -133,23 +151,5 @@ impl Told {
         );
         let drives = self.cp.state != ContactState::Reversing;
         self.is_in_line_behind() && drives && (!comes_by || self.cp.stood_first) && !self.comes_along_kerb()
-    }
-
-    /// Whether a partner that is told beside the ego, and in no farther lane, is farther off than the next one.
-    pub(super) fn is_far_beside(&self, ego: &ActorTrack, track: &ActorTrack) -> bool {
-        let (own, other) = (&ego.states[0], &track.states[0]);
-        let aside_m = Vec2::from_heading(own.heading).cross(other.position() - own.position()).abs();
-        let beside = matches!(self.origin, Origin::Beside { .. }) && self.comes_along_lanes();
-        let aside = self.sv_aside().is_some();
-        beside && !aside && (self.cp.lane.is_none() || self.sv.lane.is_none()) && !self.is_at_kerb() && aside_m > NEXT_M
-    }
-
-    /// Whether a partner that is told behind the ego is beside its lane, or ahead of it.
-    pub(super) fn is_beside_line(&self, ego: &ActorTrack, track: &ActorTrack) -> bool {
-        let sets_out = track.states.iter().position(|state| state.velocity().length() > STANDS_MPS).unwrap_or(0);
-        let (own, other) = (&ego.states[sets_out.min(ego.states.len() - 1)], &track.states[sets_out]);
-        let (forward, way) = (Vec2::from_heading(own.heading), other.position() - own.position());
-        let overlap_m = 0.5 * (ego.width_m + track.width_m) - forward.cross(way).abs();
-        self.is_in_line_behind() && (overlap_m < 0.0 || way.dot(forward) > BEHIND_M)
     }
 }

@@ -70,21 +70,6 @@ pub(crate) fn ground_for(told: &Told) -> Ground {
     Ground { stands_m, ..ground }
 }
 
-impl Told {
-    /// Whether the street is told to be one-way, and nobody of the story is told to be on its other side.
-    fn keeps_one_way(&self) -> bool {
-        let lanes = [self.sv.lane, self.cp.lane];
-        let opposing = self.origin == Origin::Opposite || lanes.contains(&Some(LaneWord::Opposing));
-        let over = [self.sv.movement, self.cp.movement].contains(&Some(Movement::CrossingIntoOpposingLane));
-        self.layout.one_way && !opposing && !over && !has(self, Role::Oncoming)
-    }
-
-    /// Whether the partner crosses a street on foot, or as an animal, where no road crosses it.
-    fn crosses_street(&self) -> bool {
-        matches!(self.cp.kind, PartnerKind::Pedestrian | PartnerKind::Animal) && self.place == PlaceKind::Street
-    }
-}
-
 /// From where the road begins that the ego turns into to the ego's front, where it meets what stands at the edge of that road, or across
 /// it. [m]
 const BEHIND_ENTRY_M: [f64; 3] = [3.0, 5.0, 8.0];
@@ -106,5 +91,20 @@ fn beside_edge(told: &Told, side: LeftRight, lot: bool, oncoming: usize) -> (Vec
         }
         LeftRight::Left if told.edge_is_median() => (strips(lanes, usual), behind_median(strips(oncoming, usual))),
         LeftRight::Left => (strips(lanes, usual), strips(0, &edge)),
+    }
+}
+
+impl Told {
+    /// Whether the street is told to be one-way, and nobody of the story is told to be on its other side.
+    fn keeps_one_way(&self) -> bool {
+        let lanes = [self.sv.lane, self.cp.lane];
+        let opposing = self.origin == Origin::Opposite || lanes.contains(&Some(LaneWord::Opposing));
+        let over = [self.sv.movement, self.cp.movement].contains(&Some(Movement::CrossingIntoOpposingLane));
+        self.layout.one_way && !opposing && !over && !has(self, Role::Oncoming)
+    }
+
+    /// Whether the partner crosses a street on foot, or as an animal, where no road crosses it.
+    fn crosses_street(&self) -> bool {
+        matches!(self.cp.kind, PartnerKind::Pedestrian | PartnerKind::Animal) && self.place == PlaceKind::Street
     }
 }

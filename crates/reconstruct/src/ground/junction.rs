@@ -22,16 +22,6 @@ impl Told {
         let along = matches!(self.origin, Origin::Behind | Origin::Ahead | Origin::Beside { .. });
         !self.plainly && along && self.cp.enters() && self.sv.state == ContactState::Moving
     }
-
-    /// Whether the partner turns out of a crossing road into the ego's, the ego's way.
-    fn turns_into_own_road(&self) -> bool {
-        let side = match self.cp.turning {
-            Turning::Left => LeftRight::Left,
-            Turning::Right => LeftRight::Right,
-            Turning::No | Turning::Round => return false,
-        };
-        self.origin == Origin::Cross { side } && self.sv.turning == Turning::No && self.sv.state == ContactState::Moving
-    }
 }
 
 /// From the stop line to the middle of an ego that stands in a queue: the first of it stands at the line; of several there are two. [m]
@@ -188,4 +178,16 @@ pub(super) fn junction(told: &Told, crossing: bool) -> Ground {
     let stands_m = if at_kerb { ground.kerbs_m[1] } else { 0.0 };
     let ground = Ground { stands_m, ..ground };
     if told.sv.turned { ground.after_turn() } else { ground }
+}
+
+impl Told {
+    /// Whether the partner turns out of a crossing road into the ego's, the ego's way.
+    fn turns_into_own_road(&self) -> bool {
+        let side = match self.cp.turning {
+            Turning::Left => LeftRight::Left,
+            Turning::Right => LeftRight::Right,
+            Turning::No | Turning::Round => return false,
+        };
+        self.origin == Origin::Cross { side } && self.sv.turning == Turning::No && self.sv.state == ContactState::Moving
+    }
 }

@@ -10,25 +10,6 @@ use recrash_model::account::{ContactState, LaneWord, LeftRight, Origin};
 use recrash_model::template::Movement;
 use recrash_model::zones::ContactZone;
 
-impl Told {
-    /// Whether the partner comes over the line between the directions to the ego's left, which is then in the lane beside that: from the
-    /// opposite direction, out of a turn against the ego's way, or by the opposite side past it.
-    fn is_met_over_line(&self) -> bool {
-        let left = side_of(&self.sv.zones) == Some(1.0);
-        let against = matches!(
-            (self.origin, self.cp.turning),
-            (Origin::Opposite, Turning::No | Turning::Left)
-                | (Origin::Cross { side: LeftRight::Left }, Turning::Right)
-                | (Origin::Cross { side: LeftRight::Right }, Turning::Left)
-        );
-        let passes = self.cp.movement == Some(Movement::Passing) && self.layout.centre_line;
-        let over = self.cp.movement == Some(Movement::CrossingIntoOpposingLane) || passes;
-        let comes_by = over && matches!(self.origin, Origin::Behind | Origin::Beside { side: LeftRight::Left });
-        let no_lane = self.sv.lane.is_none() && self.cp.lane.is_none();
-        no_lane && left && self.sv.turning == Turning::No && self.edge.is_none() && (against || comes_by)
-    }
-}
-
 /// Who is parked on the left, facing as the ego does, is so on a one-way street.
 pub(super) fn is_one_way(told: &Told) -> bool {
     matches!(told.origin, Origin::Parked { side: Some(LeftRight::Left) })
@@ -127,4 +108,23 @@ fn passes_right(told: &Told) -> bool {
     let by = moves && told.sv.zones.iter().any(touched) || passes;
     in_lane && matches!(told.origin, Origin::Beside { side: LeftRight::Right })
         || in_lane && told.origin == Origin::Behind && by
+}
+
+impl Told {
+    /// Whether the partner comes over the line between the directions to the ego's left, which is then in the lane beside that: from the
+    /// opposite direction, out of a turn against the ego's way, or by the opposite side past it.
+    fn is_met_over_line(&self) -> bool {
+        let left = side_of(&self.sv.zones) == Some(1.0);
+        let against = matches!(
+            (self.origin, self.cp.turning),
+            (Origin::Opposite, Turning::No | Turning::Left)
+                | (Origin::Cross { side: LeftRight::Left }, Turning::Right)
+                | (Origin::Cross { side: LeftRight::Right }, Turning::Left)
+        );
+        let passes = self.cp.movement == Some(Movement::Passing) && self.layout.centre_line;
+        let over = self.cp.movement == Some(Movement::CrossingIntoOpposingLane) || passes;
+        let comes_by = over && matches!(self.origin, Origin::Behind | Origin::Beside { side: LeftRight::Left });
+        let no_lane = self.sv.lane.is_none() && self.cp.lane.is_none();
+        no_lane && left && self.sv.turning == Turning::No && self.edge.is_none() && (against || comes_by)
+    }
 }

@@ -29,7 +29,7 @@ pub(super) fn straight(id: &str, start: RoadStart, length_m: f64, right: Vec<Str
     }
 }
 
-/// The same, on the other side of a median.
+/// Strips on the other side of a median.
 pub(super) fn behind_median(strips: Vec<Strip>) -> Vec<Strip> {
     [Strip::of(StripKind::Median)].into_iter().chain(strips).collect()
 }

@@ -13,7 +13,7 @@ use recrash_model::rollout::Rollout;
 use recrash_model::scenario::{Actor, ActorPlan};
 use recrash_model::vehicle::VehicleSpec;
 
-/// Them, on the road; `alone`: the crash without them.
+/// Those who have a part in what the ego does, on the road; `alone`: the crash without them.
 pub(crate) fn actors(told: &Told, staging: &Staging, recorded: &ActorPlan, alone: &Rollout) -> Vec<Actor> {
     let ego = alone.ego_track();
     let until = ((told.contact_s * 10.0).round() as usize).min(ego.states.len() - 1);

@@ -108,7 +108,7 @@ fn beside(told: &Told) -> Option<LeftRight> {
     }
 }
 
-/// The same of who stood close behind it, with no tighter bend, or of so much of its length. [m]
+/// Who stood close behind the ego comes out of its lane so far before the contact, with no tighter bend, or of so much of its length. [m]
 pub(super) const STOOD_OUT_M: f64 = 4.0;
 pub(super) const STOOD_RADIUS_M: f64 = 5.5;
 const STOOD_LENGTHS: f64 = 0.5;

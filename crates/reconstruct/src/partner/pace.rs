@@ -23,21 +23,6 @@ use recrash_model::math;
 use recrash_model::scenario::Deed;
 use recrash_model::template::Movement;
 
-impl Told {
-    /// Whether the partner came up behind an ego that stands and braked, but not enough: it is told to be this slow when they touch, and
-    /// not that it had stood.
-    fn brakes_late(&self) -> bool {
-        let slow = self.cp.impact_mps.is_some_and(|mps| mps < CREEPS_MPS);
-        self.origin == Origin::Behind
-            && self.cp.state == ContactState::Moving
-            && !self.cp.stood_first
-            && !self.cp.gains
-            && self.cp.phases.is_empty()
-            && self.sv.state.stands()
-            && slow
-    }
-}
-
 /// What the partner did before its last phase where that is told, or follows from what the ego did; and its last pace.
 pub(super) fn partner_paces(told: &Told, staging: &Staging) -> (Option<Lead>, Pace) {
     let (cp, contact_s) = (&told.cp, told.contact_s);
@@ -234,19 +219,7 @@ const SLIDES_M: f64 = 4.0;
 const FROM_EDGE_M: f64 = 1.5;
 const TO_FAR_SIDE_M: f64 = 0.7;
 
-impl Told {
-    /// It comes along as fast as the ego, on the vehicle ahead, and slides.
-    fn dropped_pace(&self) -> Option<Pace> {
-        let (from_mps, to_mps) = (self.sv.speed_mps, self.dropped_mps()?);
-        let sliding_s = (from_mps - to_mps) / DROPPED_MPS2;
-        let slows = Deed::Speed { to_mps, rate_mps2: DROPPED_MPS2 };
-        let on_m = from_mps * (self.contact_s - DROPPED_S) + to_mps * (DROPPED_S - sliding_s);
-        let driven_m = on_m + 0.5 * (from_mps + to_mps) * sliding_s;
-        Some(Pace { speed_mps: from_mps, acts: vec![when(self.contact_s - DROPPED_S, slows)], driven_m })
-    }
-}
-
-/// It lies or stands aside, and then comes; or it comes off the vehicle ahead.
+/// The pace of a thing, or of who comes across on foot: it lies or stands aside, and then comes; or it comes off the vehicle ahead.
 fn thing_pace(told: &Told) -> Option<Pace> {
     if let Some(dropped) = told.dropped_pace() {
         return Some(dropped);
@@ -266,3 +239,28 @@ fn thing_pace(told: &Told) -> Option<Pace> {
 
 /// How far somebody has backed into a space at the kerb at the contact. [m]
 const BACKS_IN_M: f64 = 7.5;
+
+impl Told {
+    /// Whether the partner came up behind an ego that stands and braked, but not enough: it is told to be this slow when they touch, and
+    /// not that it had stood.
+    fn brakes_late(&self) -> bool {
+        let slow = self.cp.impact_mps.is_some_and(|mps| mps < CREEPS_MPS);
+        self.origin == Origin::Behind
+            && self.cp.state == ContactState::Moving
+            && !self.cp.stood_first
+            && !self.cp.gains
+            && self.cp.phases.is_empty()
+            && self.sv.state.stands()
+            && slow
+    }
+
+    /// The pace of what falls off the vehicle ahead: it comes along as fast as the ego, and slides.
+    fn dropped_pace(&self) -> Option<Pace> {
+        let (from_mps, to_mps) = (self.sv.speed_mps, self.dropped_mps()?);
+        let sliding_s = (from_mps - to_mps) / DROPPED_MPS2;
+        let slows = Deed::Speed { to_mps, rate_mps2: DROPPED_MPS2 };
+        let on_m = from_mps * (self.contact_s - DROPPED_S) + to_mps * (DROPPED_S - sliding_s);
+        let driven_m = on_m + 0.5 * (from_mps + to_mps) * sliding_s;
+        Some(Pace { speed_mps: from_mps, acts: vec![when(self.contact_s - DROPPED_S, slows)], driven_m })
+    }
+}

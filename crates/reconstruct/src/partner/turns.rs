@@ -133,7 +133,7 @@ pub(super) fn turns_off(
     })
 }
 
-/// Nor does it bend its line tighter than so much of its length.
+/// Nothing on wheels bends its line tighter than so much of its length.
 pub(super) const TIGHTEST_LENGTHS: f64 = 0.5;
 
 /// Whether a line bends tighter than this somewhere.

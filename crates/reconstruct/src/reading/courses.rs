@@ -89,27 +89,6 @@ impl Told {
             }
         }
     }
-
-    /// What the ego did because of the partner: when, and to which side.
-    fn reactions(&mut self, sv: &Party, partner: &Party) {
-        if self.sv.state != ContactState::Moving || self.thing.is_some() {
-            return;
-        }
-        let turns = steps(partner, |act| act == Act::Turn).into_iter().min();
-        let reacts = steps(sv, |act| matches!(act, Act::Slow | Act::Swerve | Act::Drift)).into_iter().min();
-        let turning = matches!(self.cp.turning, Turning::Left | Turning::Right);
-        self.sv.reacts = turning && !self.cp.stood_first && turns.is_some() && turns < reacts;
-        // Who swerves from somebody that comes at it does so away from it.
-        let swerves = !steps(sv, |act| act == Act::Swerve).is_empty();
-        let straight =
-            matches!(self.sv.movement, Some(Movement::Straight | Movement::LaneDeparture | Movement::Passing));
-        if swerves && straight && self.sv.aside.is_none() && self.striker == Some(Striker::Cp) {
-            self.sv.aside = match self.origin {
-                Origin::Beside { side } | Origin::Cross { side } => Some(side.other()),
-                _ => side_of(&self.sv.zones).map(|side| if side > 0.0 { LeftRight::Right } else { LeftRight::Left }),
-            };
-        }
-    }
 }
 
 /// To which side somebody turned before it stood and reversed.
@@ -135,19 +114,6 @@ fn lies_before_turn(told: &Told, sv: &Party) -> bool {
 }
 
 impl Told {
-    /// The ego that passes the partner on the other side goes round it there.
-    fn goes_round(&mut self, sv: &Party) {
-        let pass = sv.acts.iter().rfind(|fact| fact.act == Act::Pass && !fact.after_contact && !fact.begun);
-        let Some(to) = pass.and_then(|fact| fact.side).filter(|_| self.sv.acts.iter().any(Doing::is_pass)) else {
-            return;
-        };
-        let beside =
-            matches!(self.origin, Origin::Beside { side } | Origin::Parked { side: Some(side) } if side == to.other());
-        if beside && self.sv.movement == Some(Movement::Passing) && self.sv.aside.is_none() {
-            (self.sv.aside, self.sv.goes_round) = (Some(to), true);
-        }
-    }
-
     /// Whether the ego came to a stop for a partner beside it that had begun to come over into its lane.
     pub(super) fn stops_for_merge(&self, sv: &Party, partner: &Party) -> bool {
         let step = |party: &Party, of: fn(Act) -> bool| {
@@ -186,5 +152,39 @@ impl Told {
             && only_there
             && place.contains("behind")
             && !comes(&place)
+    }
+
+    /// What the ego did because of the partner: when, and to which side.
+    fn reactions(&mut self, sv: &Party, partner: &Party) {
+        if self.sv.state != ContactState::Moving || self.thing.is_some() {
+            return;
+        }
+        let turns = steps(partner, |act| act == Act::Turn).into_iter().min();
+        let reacts = steps(sv, |act| matches!(act, Act::Slow | Act::Swerve | Act::Drift)).into_iter().min();
+        let turning = matches!(self.cp.turning, Turning::Left | Turning::Right);
+        self.sv.reacts = turning && !self.cp.stood_first && turns.is_some() && turns < reacts;
+        // Who swerves from somebody that comes at it does so away from it.
+        let swerves = !steps(sv, |act| act == Act::Swerve).is_empty();
+        let straight =
+            matches!(self.sv.movement, Some(Movement::Straight | Movement::LaneDeparture | Movement::Passing));
+        if swerves && straight && self.sv.aside.is_none() && self.striker == Some(Striker::Cp) {
+            self.sv.aside = match self.origin {
+                Origin::Beside { side } | Origin::Cross { side } => Some(side.other()),
+                _ => side_of(&self.sv.zones).map(|side| if side > 0.0 { LeftRight::Right } else { LeftRight::Left }),
+            };
+        }
+    }
+
+    /// The ego that passes the partner on the other side goes round it there.
+    fn goes_round(&mut self, sv: &Party) {
+        let pass = sv.acts.iter().rfind(|fact| fact.act == Act::Pass && !fact.after_contact && !fact.begun);
+        let Some(to) = pass.and_then(|fact| fact.side).filter(|_| self.sv.acts.iter().any(Doing::is_pass)) else {
+            return;
+        };
+        let beside =
+            matches!(self.origin, Origin::Beside { side } | Origin::Parked { side: Some(side) } if side == to.other());
+        if beside && self.sv.movement == Some(Movement::Passing) && self.sv.aside.is_none() {
+            (self.sv.aside, self.sv.goes_round) = (Some(to), true);
+        }
     }
 }

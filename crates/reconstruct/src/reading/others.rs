@@ -210,7 +210,7 @@ fn stays_close(other: &Other) -> bool {
     !crosses && before_contact(other).last().is_some_and(|fact| matches!(fact.act, Act::Hold | Act::Stop))
 }
 
-/// From where that is, where it is told.
+/// From where who touched the partner first came, where that is told.
 pub(super) fn thrower(account: &Account) -> Option<Thrower> {
     let other = account.others.iter().find(|other| other.touched_partner)?;
     let changes = |fact: &&account::ActFact| fact.act == account::Act::LaneChange && !fact.after_contact;

@@ -16,7 +16,7 @@ use recrash_roads::check_on;
 use recrash_sim::Ego;
 use std::rc::Rc;
 
-/// So many are tried first.
+/// So many ways of touching of each telling are tried first.
 const FIRST_TRIES: usize = 24;
 
 /// Where one shows all that is told and nobody strays, no more are run to find one that keeps its lane better.

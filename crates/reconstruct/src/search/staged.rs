@@ -6,7 +6,7 @@ use crate::told::crash::Told;
 use recrash_model::account::{Account, Untold};
 use recrash_model::metrics::CheckKind;
 
-/// And so many are run in all.
+/// So many are run in all.
 const MOST_RUNS: usize = 1000;
 
 /// And where the same is tried in another way.

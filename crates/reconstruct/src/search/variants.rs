@@ -58,37 +58,6 @@ impl Told {
         let told = self.by_origin().into_iter().flat_map(Self::with_junction).flat_map(with_rig);
         told.flat_map(with_extras).flat_map(with_lanes).collect()
     }
-
-    /// The same with every origin to try: the told one; where none is told the one that the type leaves, then the others.
-    fn by_origin(self) -> Vec<Self> {
-        if self.origin_told {
-            return vec![self];
-        }
-        let (left, right) = (LeftRight::Left, LeftRight::Right);
-        let mut origins = vec![self.origin];
-        for other in [
-            Origin::Behind,
-            Origin::Cross { side: left },
-            Origin::Cross { side: right },
-            Origin::Opposite,
-            Origin::Beside { side: left },
-            Origin::Beside { side: right },
-            Origin::Ahead,
-            Origin::Stall { side: Some(left) },
-            Origin::Stall { side: Some(right) },
-        ] {
-            if !origins.contains(&other) {
-                origins.push(other);
-            }
-        }
-        let with = |origin: Origin| {
-            let mut told = Self { origin, ..self.clone() };
-            told.assumed.push(format!("the partner comes {}", origin.words()));
-            told.speeds();
-            told
-        };
-        origins.into_iter().map(with).collect()
-    }
 }
 
 /// What to try: all of them, all but one, one of them, and none.
@@ -110,13 +79,6 @@ fn choices(wanted: &[Extra]) -> Vec<Vec<Extra>> {
 }
 
 impl Told {
-    /// The same at a junction too, where somebody on a street crosses nearby, or turns.
-    fn with_junction(self) -> Vec<Self> {
-        let crossed = self.place == PlaceKind::Street && self.wanted.iter().any(Extra::is_at_junction);
-        let at_one = crossed.then(|| Self { crossed_near: true, ..self.clone() });
-        at_one.into_iter().chain([self]).collect()
-    }
-
     /// The same with the partner farther behind the ego, where that matters.
     pub(super) fn afar(&self) -> Option<Self> {
         let comes_round = self.waits_behind() && self.comes_round_ego();
@@ -164,5 +126,43 @@ impl Told {
         }
         told.phases();
         Some(told)
+    }
+
+    /// The same with every origin to try: the told one; where none is told the one that the type leaves, then the others.
+    fn by_origin(self) -> Vec<Self> {
+        if self.origin_told {
+            return vec![self];
+        }
+        let (left, right) = (LeftRight::Left, LeftRight::Right);
+        let mut origins = vec![self.origin];
+        for other in [
+            Origin::Behind,
+            Origin::Cross { side: left },
+            Origin::Cross { side: right },
+            Origin::Opposite,
+            Origin::Beside { side: left },
+            Origin::Beside { side: right },
+            Origin::Ahead,
+            Origin::Stall { side: Some(left) },
+            Origin::Stall { side: Some(right) },
+        ] {
+            if !origins.contains(&other) {
+                origins.push(other);
+            }
+        }
+        let with = |origin: Origin| {
+            let mut told = Self { origin, ..self.clone() };
+            told.assumed.push(format!("the partner comes {}", origin.words()));
+            told.speeds();
+            told
+        };
+        origins.into_iter().map(with).collect()
+    }
+
+    /// The same at a junction too, where somebody on a street crosses nearby, or turns.
+    fn with_junction(self) -> Vec<Self> {
+        let crossed = self.place == PlaceKind::Street && self.wanted.iter().any(Extra::is_at_junction);
+        let at_one = crossed.then(|| Self { crossed_near: true, ..self.clone() });
+        at_one.into_iter().chain([self]).collect()
     }
 }

@@ -18,7 +18,7 @@ impl Phase {
     }
 }
 
-/// So many are checked, and drawn in any case, the last one counted.
+/// So many phases are checked, and drawn in any case, the last one counted.
 pub(crate) const CHECKED_PHASES: usize = 4;
 
 /// The last of them, which are checked.

@@ -137,7 +137,7 @@ const RIGHT_WAY: u32 = 1;
 const SQUEEZED: u32 = 1;
 const BESIDE_M: f64 = 2.4;
 
-/// The same of it, that the ego has turned by more than this. [rad]
+/// Of who goes straight on behind an ego that turns, that the ego has turned by more than this. [rad]
 const LATE: u32 = 1;
 const EARLY_RAD: f64 = 0.6;
 

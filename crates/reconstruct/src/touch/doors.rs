@@ -177,13 +177,6 @@ fn beside_line(told: &Told, ground: &Ground) -> Vec<Ground> {
     }
 }
 
-impl Told {
-    /// Whether the partner is told to stand beside the lanes, and there is room for it.
-    fn has_kerb(&self, ground: &Ground) -> bool {
-        self.stands_beside(false) && ground.beside.contains(&StripKind::Parking)
-    }
-}
-
 /// Points of the other's outline that the door may meet: shares of half of its length and width.
 fn met_points(other: &Side) -> Vec<(f64, f64)> {
     use ContactZone as Z;
@@ -243,4 +236,11 @@ fn touch(
     let still = Vec2::new(0.0, 0.0);
     let geometry = contact_geometry(&outline(other.0, other.1), velocity(other.0, other.1.heading), &door, still);
     Some((cp, zone_of(&own, &door), geometry.ego_zone))
+}
+
+impl Told {
+    /// Whether the partner is told to stand beside the lanes, and there is room for it.
+    fn has_kerb(&self, ground: &Ground) -> bool {
+        self.stands_beside(false) && ground.beside.contains(&StripKind::Parking)
+    }
 }

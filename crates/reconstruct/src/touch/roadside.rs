@@ -19,28 +19,6 @@ use recrash_model::template::Movement;
 use recrash_model::zones::ContactZone;
 use std::rc::Rc;
 
-impl Told {
-    /// From the middle of the outermost lane to the partner's flank: behind the strip beside it, but a small thing stands in that; who is parked
-    /// stands by the lane, or in the middle of its strip where the ego pulls over too. [m]
-    fn edge_m(&self) -> f64 {
-        let strip = self.beside_edge().first().copied().filter(|strip| strip.is_paved() && !self.edge_is_median());
-        let strip_m = strip.map_or(0.0, StripKind::usual_width_m);
-        let width_m = size_of(&self.cp).1;
-        let on_strip_m = match (self.is_parked_along(), self.sv.movement) {
-            (true, Some(Movement::ParkingManeuver)) => (0.5 * (strip_m - width_m)).max(0.0),
-            (true, _) => 0.0,
-            (false, _) if strip_m > 0.0 && !self.goes_along() => strip_m - width_m,
-            (false, _) => strip_m,
-        };
-        0.5 * LANE_M + on_strip_m
-    }
-
-    /// Whether the partner is a thing that goes along the road.
-    fn goes_along(&self) -> bool {
-        self.thing.is_some() && size_of(&self.cp).0 > LONG_M
-    }
-}
-
 /// An ego that has stood, and driven no farther since, drifts by this share of it. [m]
 const LEAST_DRIFT_M: f64 = 7.0;
 const DRIFTS: f64 = 0.12;
@@ -140,4 +118,26 @@ fn drifted(told: &Told, ground: &Ground, sv_s_m: f64, point: (f64, f64), line_m:
         }
     }
     None
+}
+
+impl Told {
+    /// From the middle of the outermost lane to the partner's flank: behind the strip beside it, but a small thing stands in that; who is parked
+    /// stands by the lane, or in the middle of its strip where the ego pulls over too. [m]
+    fn edge_m(&self) -> f64 {
+        let strip = self.beside_edge().first().copied().filter(|strip| strip.is_paved() && !self.edge_is_median());
+        let strip_m = strip.map_or(0.0, StripKind::usual_width_m);
+        let width_m = size_of(&self.cp).1;
+        let on_strip_m = match (self.is_parked_along(), self.sv.movement) {
+            (true, Some(Movement::ParkingManeuver)) => (0.5 * (strip_m - width_m)).max(0.0),
+            (true, _) => 0.0,
+            (false, _) if strip_m > 0.0 && !self.goes_along() => strip_m - width_m,
+            (false, _) => strip_m,
+        };
+        0.5 * LANE_M + on_strip_m
+    }
+
+    /// Whether the partner is a thing that goes along the road.
+    fn goes_along(&self) -> bool {
+        self.thing.is_some() && size_of(&self.cp).0 > LONG_M
+    }
 }
