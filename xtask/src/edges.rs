@@ -1,5 +1,5 @@
 //! Which crate may use which, and which part of a crate which other part: the table in ARCHITECTURE.md against cargo's own
-//! word, and no circles inside `pipeline`.
+//! word, and no circles inside `pipeline` and `reconstruct`.
 
 use crate::steps::{Result, cargo_command, root};
 use std::collections::{BTreeMap, BTreeSet};
@@ -11,11 +11,18 @@ type Uses = BTreeMap<String, BTreeSet<String>>;
 
 /// Crates that no table speaks of: what tests share, and the script language.
 const FREE: [&str; 1] = ["testing"];
+
+/// Crates whose parts use each other in no circle; and those of which no file is in one.
+const LAYERED: [&str; 2] = ["pipeline", "reconstruct"];
+const LAYERED_BY_FILE: [&str; 1] = ["reconstruct"];
+
 /// Every rule of this file.
 pub fn problems(root: &Path) -> Result<Vec<String>> {
     let text = fs::read_to_string(root.join("ARCHITECTURE.md")).unwrap_or_default();
     let mut problems = edge_problems(&allowed(&text), &crate_uses("normal,build")?, &crate_uses("dev")?);
-    problems.extend(circle_problems(&part_uses(&root.join("crates/pipeline/src"))));
+    let source = |name: &str| root.join("crates").join(name).join("src");
+    problems.extend(LAYERED.into_iter().flat_map(|name| circle_problems(name, &part_uses(&source(name)))));
+    problems.extend(LAYERED_BY_FILE.into_iter().flat_map(|name| circle_problems(name, &file_uses(&source(name)))));
     Ok(problems)
 }
 
@@ -119,6 +126,21 @@ fn part_uses(source: &Path) -> Uses {
     uses
 }
 
+/// The files of a crate by their modules, `a/b` of `a/b.rs` and `a` of `a/mod.rs`, and those that each uses. Its own folder's `mod.rs`
+/// does not count.
+fn file_uses(source: &Path) -> Uses {
+    let files: BTreeMap<String, String> =
+        files_of(source).into_iter().map(|(name, text)| (name.trim_end_matches("/mod").to_owned(), text)).collect();
+    let file_of =
+        |path: &Vec<String>| (1..=path.len()).rev().map(|n| path[..n].join("/")).find(|name| files.contains_key(name));
+    let uses = |(name, text): (&String, &String)| {
+        let is_other = |other: &String| other != name && !name.starts_with(&format!("{other}/"));
+        let used = paths(text, name).iter().filter_map(file_of).filter(is_other).collect();
+        (name.clone(), used)
+    };
+    files.iter().map(uses).collect()
+}
+
 /// Every Rust file below a folder: its name from there, and its text without the tests at its end.
 fn files_of(source: &Path) -> Vec<(String, String)> {
     let mut paths = Vec::new();
@@ -161,21 +183,64 @@ fn handed_on(text: &str, parts: &BTreeSet<String>) -> BTreeMap<String, String> {
     handed
 }
 
+/// Paths from the crate's root that the text of a module speaks of: `crate::a::{B, c::D}`, `super::e`.
+fn paths(text: &str, module: &str) -> Vec<Vec<String>> {
+    let code = without_comments(text);
+    let mut found = Vec::new();
+    for prefix in ["crate::", "super::"] {
+        for at in begins(&code, prefix) {
+            let mut base: Vec<String> = module.split('/').map(str::to_owned).collect();
+            let mut rest = &code[at..];
+            if prefix == "crate::" {
+                base.clear();
+                rest = &rest[prefix.len()..];
+            }
+            while let Some(above) = rest.strip_prefix("super::") {
+                base.pop();
+                rest = above;
+            }
+            found.extend(tree(rest, base));
+        }
+    }
+    found
+}
+
+/// The paths of a tree: `a::{b, c::D}` below a base.
+fn tree(text: &str, mut base: Vec<String>) -> Vec<Vec<String>> {
+    if let Some(list) = text.trim_start().strip_prefix('{') {
+        return members(list).into_iter().flat_map(|member| tree(member, base.clone())).collect();
+    }
+    let Some(name) = first_name(text) else { return Vec::new() };
+    let rest = text.trim_start()[name.len()..].strip_prefix("::");
+    if name != "self" {
+        base.push(name);
+    }
+    let below = rest.map(|rest| tree(rest, base.clone())).unwrap_or_default();
+    if below.is_empty() { vec![base] } else { below }
+}
+
+/// A text without the lines that are comments.
+fn without_comments(text: &str) -> String {
+    text.lines().filter(|line| !line.trim_start().starts_with("//")).map(|line| format!("{line}\n")).collect()
+}
+
+/// Where a path begins with this.
+fn begins(code: &str, prefix: &str) -> Vec<usize> {
+    let goes_on = |c: char| c.is_alphanumeric() || c == '_' || c == ':' || c == '$';
+    let ats = code.match_indices(prefix).map(|(at, _)| at);
+    ats.filter(|at| !code[..*at].chars().next_back().is_some_and(goes_on)).collect()
+}
+
 /// Names right below the crate's root that a text speaks of: `crate::a`, `crate::{a, b::c}`, `super::super::a`.
 fn root_names(text: &str, depth: usize) -> BTreeSet<String> {
     let prefixes = ["crate::".to_owned(), "super::".repeat(depth)];
-    let code: String =
-        text.lines().filter(|line| !line.trim_start().starts_with("//")).map(|l| format!("{l}\n")).collect();
+    let code = without_comments(text);
     let mut names = BTreeSet::new();
     for prefix in prefixes {
-        for (at, _) in code.match_indices(&prefix) {
-            let before = code[..at].chars().next_back();
-            if before.is_some_and(|c| c.is_alphanumeric() || c == '_' || c == ':' || c == '$') {
-                continue;
-            }
+        for at in begins(&code, &prefix) {
             let rest = &code[at + prefix.len()..];
             match rest.strip_prefix('{') {
-                Some(list) => names.extend(first_names(list)),
+                Some(list) => names.extend(members(list).into_iter().filter_map(first_name)),
                 None => names.extend(first_name(rest)),
             }
         }
@@ -188,14 +253,14 @@ fn first_name(text: &str) -> Option<String> {
     (!name.is_empty() && name != "super").then_some(name)
 }
 
-/// First names of the members of a list in braces, whose opening one is gone.
-fn first_names(list: &str) -> Vec<String> {
-    let (mut names, mut depth, mut begins) = (Vec::new(), 0, 0);
+/// The members of a list in braces, whose opening one is gone.
+fn members(list: &str) -> Vec<&str> {
+    let (mut members, mut depth, mut begins) = (Vec::new(), 0, 0);
     for (at, letter) in list.char_indices() {
         match letter {
             '{' => depth += 1,
             ',' | '}' if depth == 0 => {
-                names.extend(first_name(&list[begins..at]));
+                members.push(&list[begins..at]);
                 begins = at + 1;
                 if letter == '}' {
                     break;
@@ -205,17 +270,17 @@ fn first_names(list: &str) -> Vec<String> {
             _ => {}
         }
     }
-    names
+    members
 }
 
-fn circle_problems(uses: &Uses) -> Vec<String> {
+fn circle_problems(of: &str, uses: &Uses) -> Vec<String> {
     let told = |circle: &BTreeSet<String>| {
         let edge = |name: &String| {
             let others: Vec<&str> = uses[name].intersection(circle).map(String::as_str).collect();
             format!("{name} uses {}", others.join(" and "))
         };
         let edges: Vec<String> = circle.iter().map(edge).collect();
-        format!("crates/pipeline/src: a circle: {}; move what both need into a part of its own", edges.join(", "))
+        format!("crates/{of}/src: a circle: {}; move what both need into a part of its own", edges.join(", "))
     };
     circles(uses).iter().map(told).collect()
 }
@@ -289,14 +354,23 @@ mod tests {
     }
 
     #[test]
+    fn paths_are_found_from_the_root_however_they_are_written() {
+        let text =
+            "use crate::a::{B, c::{self, D}};\nuse super::e::F;\nfn f() { super::super::g() }\n// crate::not::this";
+        let found: BTreeSet<String> = paths(text, "x/y").iter().map(|path| path.join("/")).collect();
+        assert_eq!(found, set(&["a/B", "a/c", "a/c/D", "x/e/F", "g"]));
+    }
+
+    #[test]
     fn a_circle_is_told_with_its_edges() {
         let there_and_back = uses(&[("a", &["b"]), ("b", &["c"]), ("c", &["a"]), ("d", &["a"])]);
-        let problems = circle_problems(&there_and_back);
+        let problems = circle_problems("x", &there_and_back);
         assert_eq!(problems.len(), 1, "{problems:?}");
         assert!(
-            problems[0].contains("a uses b, b uses c, c uses a") && !problems[0].contains("d uses"),
+            problems[0].starts_with("crates/x/src") && problems[0].contains("a uses b, b uses c, c uses a"),
             "{problems:?}"
         );
-        assert_eq!(circle_problems(&uses(&[("a", &["b"]), ("b", &[])])), Vec::<String>::new());
+        assert!(!problems[0].contains("d uses"), "{problems:?}");
+        assert_eq!(circle_problems("x", &uses(&[("a", &["b"]), ("b", &[])])), Vec::<String>::new());
     }
 }

@@ -1,47 +1,19 @@
-//! Ways of others near who turn at a junction, come out of where they are parked, go aside in their lane, set off, or come across the road.
+//! Ways of others near who turn at a junction, come out of where they are parked, set off, or come across the road.
 
-use super::{DRIVES_MPS, RIDES_MPS, Scene, Way, place, tenth};
-use crate::extras::stands;
-use crate::ground::{LANE_M, corner_m};
-use crate::near::{Does, First, Near};
-use crate::pace::when;
-use crate::speeds::{TURNS_MPS, WALKS_MPS};
-use crate::things::SLIDES_MPS;
+use crate::ground::pieces::corner_m;
+use crate::nearby::scene::{DRIVES_MPS, RIDES_MPS, Scene};
+use crate::nearby::way::{GOES_MPS, LEADS_MPS, Way};
+use crate::others::stand::stands;
+use crate::told::near::{First, Near};
+use crate::usual::{LANE_M, SLIDES_MPS, TURNS_MPS, WALKS_MPS};
 use recrash_model::account::{Kind, KindGroup, LeftRight, Origin};
 use recrash_model::geometry::{Pose, Vec2};
-use recrash_model::scenario::{ActorPlan, Deed, Leg};
-
-/// Who sets off comes to this speed, so fast; who comes out of a space is out after so much way, and begins to leave it so soon after.
-/// [m/s, m/s^2, m, s]
-const GOES_MPS: f64 = 6.0;
-const LEADS_MPS: f64 = 8.0;
-const GOES_MPS2: f64 = 1.5;
-const OUT_OVER_M: f64 = 10.0;
-const LEAVES_S: f64 = 0.4;
-
-/// Who goes aside in its lane does so by this. [m]
-const ASIDE_M: f64 = 0.7;
 
 /// Who stood ahead sets off so long before the ego does. [s]
 const EARLIER_S: f64 = 0.8;
 
 /// Who comes across waits so far beyond the lanes. [m]
 const BEYOND_M: f64 = 0.9;
-
-impl Way {
-    /// It stands, sets off, and leaves the place to one side where it is told to.
-    pub(super) fn out(&self, (at_s, to_mps): (f64, f64)) -> ActorPlan {
-        let end = Pose { position: self.from.position + Vec2::from_heading(self.from.heading) * 200.0, ..self.from };
-        let goes = when(tenth(at_s), Deed::Speed { to_mps, rate_mps2: GOES_MPS2 });
-        let shift = Deed::Shift { to_t_m: self.shifts_m, over_m: OUT_OVER_M };
-        let shifts = (self.shifts_m != 0.0).then(|| when(tenth(at_s + LEAVES_S), shift));
-        ActorPlan {
-            course: vec![Leg::Curve { to: place(end), reverse: false }],
-            acts: [goes].into_iter().chain(shifts).collect(),
-            ..ActorPlan::standing(place(self.from))
-        }
-    }
-}
 
 impl Scene<'_> {
     /// Through the junction, from the arm where it is told, into the one to which it turns.
@@ -95,18 +67,6 @@ impl Scene<'_> {
             }
         }
         list
-    }
-
-    /// Along its lane, and aside in it.
-    pub(super) fn aside(&self, near: Near, side: Option<LeftRight>, half_m: f64) -> Vec<Way> {
-        let drives = Near { does: Does::Drives, ..near };
-        let sides = side.map_or(vec![LeftRight::Left, LeftRight::Right], |side| vec![side]);
-        let ways = || self.drives(drives, half_m * 2.0).into_iter().filter(|way| way.speed_mps > 0.0);
-        let shifted = |side: LeftRight| {
-            let shifts_m = if side == LeftRight::Left { -ASIDE_M } else { ASIDE_M };
-            ways().filter(|way| way.stops_m.is_none()).map(move |way| Way { shifts_m, ..way })
-        };
-        sides.into_iter().flat_map(shifted).collect()
     }
 
     /// Ahead of the ego: it stands there, and sets off before the ego does.

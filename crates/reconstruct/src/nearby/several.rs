@@ -1,10 +1,11 @@
 //! The second one of those who are told to be several: as the first, beside it or behind it.
 
-use super::{CLEAR_M, Scene, hinders_nobody};
-use crate::control;
-use crate::ground::corner_m;
-use crate::others::{Extra, Role};
-use crate::seen::Seen;
+use crate::draft::signals;
+use crate::facts::seen::Seen;
+use crate::ground::pieces::corner_m;
+use crate::nearby::hinders::{CLEAR_M, hinders_nobody};
+use crate::nearby::scene::Scene;
+use crate::told::others::{Extra, Role};
 use recrash_model::geometry::Vec2;
 use recrash_model::kinds::PartnerKind;
 use recrash_model::rollout::Rollout;
@@ -39,7 +40,7 @@ impl Scene<'_> {
             let mut with = draft.clone();
             with.actors.push(second.clone());
             let recorded = with.ego.recorded.clone()?;
-            with.control = control::devices(self.told, self.ground, &recorded, &with.actors);
+            with.control = signals::devices(self.told, self.ground, &recorded, &with.actors);
             let scenario = recrash_roads::check(with).ok()?.value;
             let driven = recrash_sim::simulate(&scenario, Ego::Recorded);
             let seen = Seen::new(self.told, &driven, self.contact_s);

@@ -1,0 +1,4 @@
+//! The scenario of a staging: both of the two, the others, the road, and its signals and signs.
+
+pub(crate) mod scenario;
+pub(crate) mod signals;

@@ -1,0 +1,215 @@
+//! The ego's plan until the contact, and where that takes it.
+
+use crate::ego::pace::ego_paces;
+use crate::ground::way::Ground;
+use crate::pace::lead::before;
+use crate::pace::plain::{Pace, first_time, time_before, when};
+use crate::told::aside::Aside;
+use crate::told::crash::Told;
+use crate::usual::beyond_m;
+use recrash_model::account::ContactState;
+use recrash_model::geometry::{Pose, Vec2};
+use recrash_model::rollout::{ActorState, STEP_S};
+use recrash_model::scenario::{
+    Act, ActorPlan, Along, Deed, EgoSpec, Leg, MapSpec, Place, SCENARIO_FORMAT, ScenarioDraft,
+};
+use recrash_roads::check_on;
+
+/// Before it began to brake for its stop, the ego still rolls for so long under the system under test. [s]
+pub(crate) const ROLLS_S: f64 = 1.0;
+
+/// The simulation goes on for so long after the contact. [s]
+pub(crate) const GOES_ON_S: f64 = 5.0;
+
+/// Where the ego is at the contact, when its centre has come so far along its way; nothing where it cannot come there. Who leaves its
+/// line is driven there alone.
+pub(crate) fn sv_at_contact(told: &Told, ground: &Ground, sv_s_m: f64) -> Option<Pose> {
+    let on_way = ground.sv_pose(sv_s_m);
+    if ground.drift.or(told.sv_aside()).is_none() && !pulls_over(told, ground) {
+        return Some(ground.pose(sv_s_m, ground.stands_m));
+    }
+    let alone = ScenarioDraft {
+        format: SCENARIO_FORMAT.to_owned(),
+        id: "alone".to_owned(),
+        map: MapSpec::G((*ground.map).clone()),
+        ego: EgoSpec {
+            kind: told.sv.kind,
+            size: told.sv.size,
+            lane: ground.lane,
+            target_speed_mps: 10.0,
+            route: ground.route.clone(),
+            recorded: Some(ego_plan(told, ground, sv_s_m, on_way)),
+            ..EgoSpec::default()
+        },
+        duration_s: told.contact_s + GOES_ON_S,
+        ..ScenarioDraft::default()
+    };
+    let scenario = check_on(alone, Some(&ground.network)).ok()?.value;
+    let rollout = recrash_sim::simulate(&scenario, recrash_sim::Ego::Recorded);
+    rollout.ego_track().states.get((told.contact_s / STEP_S).round() as usize).map(ActorState::pose)
+}
+
+/// How long a lane change or a drift takes, and the least and the most that is driven meanwhile. [s, m]
+const ASIDE_S: f64 = 4.0;
+const ASIDE_M: (f64, f64) = (14.0, 60.0);
+
+/// Who was completing a lane change has driven so many times half of its way.
+const MOSTLY_DONE: f64 = 1.5;
+
+/// The same of who swerves from somebody. [s, m]
+const SWERVES_S: f64 = 1.6;
+const SWERVES_M: f64 = 8.0;
+
+/// Who drove on after it had changed lanes has done so for so long. [s]
+const DRIVES_ON_S: f64 = 1.5;
+
+/// Who drifts to the edge of the road drives at least so many times as far as it drifts until then.
+const DRIFTS_BY: f64 = 5.0;
+
+/// The move out of the ego's line, half done at the contact, or done before it.
+fn shift(told: &Told, aside: Aside, pace: &Pace, least_m: f64) -> Act {
+    let (contact_s, speed_mps) = (told.contact_s, told.sv.speed_mps);
+    let (over_s, from_m) = if told.sv.reacts { (SWERVES_S, SWERVES_M) } else { (ASIDE_S, ASIDE_M.0) };
+    let half_m = (0.5 * over_s * speed_mps).clamp(0.5 * from_m, 0.5 * ASIDE_M.1).max(least_m);
+    let drives = pace.speed_mps > 0.0;
+    // Who was completing it has done most of it.
+    let most_m = MOSTLY_DONE * half_m;
+    if told.sv.completes && !aside.done && drives && speed_mps > 0.0 && most_m < pace.driven_m {
+        let from_s = (time_before(contact_s, pace, most_m) * 10.0).round() / 10.0;
+        return when(from_s, Deed::Shift { to_t_m: aside.to_t_m, over_m: 2.0 * half_m });
+    }
+    let (half_m, from_s) = if aside.done {
+        (half_m, (contact_s - DRIVES_ON_S - 2.0 * half_m / speed_mps.max(0.1)).max(0.0))
+    } else if drives && speed_mps == 0.0 {
+        // It has done half of it where it comes to stand.
+        let brakes_s = first_time(&pace.acts);
+        let braking_m = pace.driven_m - pace.speed_mps * brakes_s;
+        let half_m = (braking_m + pace.speed_mps * ROLLS_S).min(pace.driven_m);
+        (half_m, (brakes_s - ROLLS_S).max(0.0))
+    } else if half_m < pace.driven_m && (least_m > 0.0 || drives && contact_s * speed_mps < half_m) {
+        (half_m, time_before(contact_s, pace, half_m))
+    } else if half_m < pace.driven_m && drives {
+        (half_m, contact_s - half_m / speed_mps)
+    } else {
+        (pace.driven_m.max(1.0), first_time(&pace.acts))
+    };
+    when((from_s * 10.0).round() / 10.0, Deed::Shift { to_t_m: aside.to_t_m, over_m: 2.0 * half_m })
+}
+
+/// Who parks at the kerb comes along its lane, and leaves it on so much of its way; it is at the kerb so far before it stands. [m]
+const PULLS_OVER_M: f64 = 20.0;
+const AT_KERB_M: f64 = 1.0;
+
+/// Whether the ego comes to the kerb where it is parked.
+fn pulls_over(told: &Told, ground: &Ground) -> bool {
+    told.sv.state == ContactState::Stopped && told.is_at_kerb() && ground.stands_m != 0.0
+}
+
+/// Who leaves a line and comes back to it does the first in so long, on so much of its way, and is on the other one for so long.
+/// [s, m, s]
+const GOES_OUT_S: (f64, f64) = (2.4, 4.0);
+const GOES_OUT_M: (f64, f64) = (8.0, 30.0);
+const IS_OUT_S: f64 = 0.5;
+
+/// Puts before a lane change that it was one in the other direction first; false where there is none, or no time for it.
+fn goes_out(aside: Aside, pace: &mut Pace) -> bool {
+    let shift = pace.acts.iter().find(|act| matches!(act.deed, Deed::Shift { .. }));
+    let Some(shift_s) = shift.map(|act| first_time(std::slice::from_ref(act))).filter(|_| aside.back) else {
+        return false;
+    };
+    let takes_s = (shift_s - IS_OUT_S).clamp(GOES_OUT_S.0, GOES_OUT_S.1);
+    let over_m = (takes_s * pace.speed_mps).clamp(GOES_OUT_M.0, GOES_OUT_M.1);
+    let from_s = ((shift_s - IS_OUT_S - over_m / pace.speed_mps.max(0.1)) * 10.0).floor() / 10.0;
+    let timed = pace.acts.iter().filter(|act| act.when.is_some());
+    let drives = timed.map(|act| first_time(std::slice::from_ref(act))).all(|at_s| at_s >= shift_s);
+    if from_s < 0.0 || !drives {
+        return false;
+    }
+    pace.acts.insert(0, when(from_s, Deed::Shift { to_t_m: aside.from_t_m, over_m }));
+    true
+}
+
+pub(crate) fn ego_plan(told: &Told, ground: &Ground, sv_s_m: f64, sv: Pose) -> ActorPlan {
+    let (mut lead, mut pace) = ego_paces(told, ground, sv_s_m);
+    let pulls_over = pulls_over(told, ground) && lead.is_none() && pace.driven_m > PULLS_OVER_M;
+    if pulls_over {
+        let brakes_s = first_time(&pace.acts);
+        let braking_m = pace.driven_m - pace.speed_mps * brakes_s;
+        let way_m = PULLS_OVER_M.max(braking_m + AT_KERB_M);
+        let from_s = ((brakes_s - (way_m - braking_m) / pace.speed_mps) * 10.0).floor().max(0.0) / 10.0;
+        pace.acts.insert(0, when(from_s, Deed::Shift { to_t_m: ground.stands_m, over_m: way_m - AT_KERB_M }));
+    }
+    let aside = ground.drift.or(told.sv_aside());
+    if let Some(aside) = aside {
+        let by_m = (aside.to_t_m - aside.from_t_m).abs();
+        let least_m = if ground.drift.is_some() { DRIFTS_BY * by_m } else { 0.0 };
+        let shift = shift(told, aside, &pace, least_m);
+        // It leaves its line before it stops for good.
+        let at = match told.sv.state.stands() {
+            true => 0,
+            // Acts begin in order.
+            false => {
+                let from_s = first_time(std::slice::from_ref(&shift));
+                pace.acts.partition_point(|act| first_time(std::slice::from_ref(act)) <= from_s)
+            }
+        };
+        match lead.as_mut().filter(|_| told.sv.state.stands()) {
+            Some(lead) => lead.shifts(aside.to_t_m),
+            None => pace.acts.insert(at, shift),
+        }
+    }
+    let reverses = told.sv.state == ContactState::Reversing;
+    let mut pace = match lead {
+        Some(lead) if reverses || lead.reverses() => {
+            let (plan, begin) = along_line(told, pace, sv);
+            return before(lead, plan, begin, None);
+        }
+        Some(lead) => lead.then(pace),
+        None => pace,
+    };
+    let from_m =
+        aside.map_or(if pulls_over { 0.0 } else { ground.stands_m }, |aside| match goes_out(aside, &mut pace) {
+            true => aside.to_t_m,
+            false => aside.from_t_m,
+        });
+    let lane = |s_m: f64| Place::Lane {
+        road: ground.route[0].clone(),
+        lane: ground.lane,
+        along: Along::FromStart(s_m),
+        t_m: from_m,
+        heading_deg: 0.0,
+    };
+    if reverses {
+        return along_line(told, pace, sv).0;
+    }
+    let start_m = sv_s_m - pace.driven_m;
+    let course = if pace.driven_m == 0.0 {
+        Vec::new()
+    } else {
+        vec![Leg::Lanes { roads: ground.route.clone(), until_m: None, lane: None, against: false, reverse: false }]
+    };
+    // Where it begins inside of the junction, it is on no lane of its first road.
+    let start = if start_m > ground.first_m() {
+        let pose = ground.pose(start_m, ground.drift.map_or(0.0, |drift| drift.from_t_m));
+        Place::at(pose.position.x, pose.position.y, pose.heading.to_degrees())
+    } else {
+        lane(start_m)
+    };
+    ActorPlan { speed_mps: pace.speed_mps, course, acts: pace.acts, ..ActorPlan::standing(start) }
+}
+
+/// The plan of an ego that goes to its place by the line on which it is there, forwards or backwards; and where it begins.
+fn along_line(told: &Told, pace: Pace, sv: Pose) -> (ActorPlan, Pose) {
+    let reverse = told.sv.state == ContactState::Reversing;
+    let way = Vec2::from_heading(sv.heading) * if reverse { -1.0 } else { 1.0 };
+    let at = |position: Vec2| Place::at(position.x, position.y, sv.heading.to_degrees());
+    let to = sv.position + way * beyond_m(told.sv.speed_mps);
+    let course = match pace.driven_m {
+        0.0 => Vec::new(),
+        _ => vec![Leg::Curve { to: at(to), reverse }],
+    };
+    let begin = Pose { position: sv.position - way * pace.driven_m, ..sv };
+    let plan =
+        ActorPlan { speed_mps: pace.speed_mps, course, acts: pace.acts, ..ActorPlan::standing(at(begin.position)) };
+    (plan, begin)
+}

@@ -1,0 +1,297 @@
+//! What each of the two is told to have done before the contact, one after the other, found in the way that was driven.
+
+use crate::facts::movement::LEFT_LINE_M;
+use crate::told::doing::{CHANGES_MPS, Doing, Least, least};
+use crate::usual::STANDS_MPS;
+use recrash_model::account::{Act, LeftRight};
+use recrash_model::geometry::Vec2;
+use recrash_model::math;
+use recrash_model::metrics::CheckResult;
+use recrash_model::rollout::{ActorState, ActorTrack};
+
+impl Doing {
+    /// How long before it is seen its beginning is found. [steps]
+    fn found_early(&self) -> usize {
+        let slow = matches!(least(self.act), Some(Least::Speed(_) | Least::Aside(_) | Least::Turn(_) | Least::Any));
+        if slow || self.begun { FOUND_EARLY } else { 0 }
+    }
+
+    /// How long before an act of the other one it may begin that is told behind that. [steps]
+    fn before_other(&self) -> usize {
+        match self.act {
+            Act::SetOff if !self.begun => JUST_BEFORE_OTHER,
+            _ => BEFORE_OTHER + 2 * self.found_early(),
+        }
+    }
+}
+
+/// Who comes to a stop was faster before. [m/s]
+const CAME_MPS: f64 = 0.5;
+
+/// Who had changed lanes before it turned has gone aside by so much, at no more than this angle to its line. [m, rad]
+const CHANGED_LANES_M: f64 = 2.2;
+const CHANGES_LANES_RAD: f64 = 0.6;
+
+/// Who has begun to pass has gone aside by so much. [m]
+const BEGUN_PASS_M: f64 = 0.5;
+
+/// What is told to have come behind an act of the other one begins no earlier than so long before that; what is seen at once, no earlier
+/// than this. [steps]
+const BEFORE_OTHER: usize = 5;
+const JUST_BEFORE_OTHER: usize = 2;
+
+/// What begins little by little is found by so much before it is seen. [steps]
+const FOUND_EARLY: usize = 7;
+
+/// Who passes comes beside the other one by so much of its length at least: a front on a rear has none. [m]
+const BESIDE_M: f64 = 0.3;
+
+/// One that is at more than this to another's way, and to the way back, stands across it. [rad]
+const ALONG_RAD: f64 = 0.9;
+
+/// Who comes from the kerb, or draws up at it, has turned by so much where it does not go aside. [deg]
+const BENDS_DEG: f64 = 8.0;
+
+/// Of what was begun, so much is seen.
+const BEGUN: f64 = 0.2;
+
+/// An act takes no longer, and is seen so soon by so much of it. [steps]
+const LONGEST: usize = 60;
+const SOON: usize = 10;
+const SOON_SHARE: f64 = 0.04;
+
+/// Who did one thing after another may have begun the second so much earlier. [steps]
+const OVERLAP: usize = 5;
+
+/// One of the two: what is told of it, its way, and the first step at which its front is in the junction.
+pub(super) struct Did<'a> {
+    pub(crate) told: &'a [Doing],
+    pub(crate) track: &'a ActorTrack,
+    pub(crate) entered: Option<usize>,
+}
+
+impl Did<'_> {
+    /// Its way until then, beside that of the other one.
+    fn way<'a>(&'a self, other: Option<&'a Did<'_>>, time_s: f64) -> Way<'a> {
+        let until = |track: &ActorTrack| ((time_s * 10.0).floor() as usize).min(track.states.len() - 1);
+        let by = other.map(|other| Other {
+            states: &other.track.states[..=until(other.track)],
+            half_m: 0.5 * (self.track.length_m + other.track.length_m),
+            beyond_m: 0.5 * (other.track.length_m - self.track.length_m),
+        });
+        let until = until(self.track);
+        Way { states: &self.track.states[..=until], other: by, entered: self.entered.filter(|at| *at <= until) }
+    }
+}
+
+/// Whether everything that is told of somebody is seen, in order, and behind what the other one had done by the words; and what is.
+pub(super) fn check(one: &Did<'_>, other: Option<&Did<'_>>, time_s: f64) -> (CheckResult, String) {
+    let (told, way) = (one.told, one.way(other, time_s));
+    let others: Vec<(u32, usize)> = other.map_or(Vec::new(), |other| {
+        let seen = other.way(Some(one), time_s).times(other.told, &[]);
+        // Passing goes on while the other one does something.
+        let bounds = other.told.iter().zip(seen).filter(|(doing, _)| !doing.is_pass());
+        bounds.filter_map(|(doing, at)| Some((doing.step, at? + doing.found_early()))).collect()
+    });
+    let (alone, in_order) = (way.times(told, &[]), way.times(told, &others));
+    let of = |wanted: fn(Option<usize>, Option<usize>) -> bool| -> Vec<Doing> {
+        let all = told.iter().zip(alone.iter().zip(&in_order));
+        all.filter(|(_, (alone, ordered))| wanted(**alone, **ordered)).map(|(doing, _)| *doing).collect()
+    };
+    let (missed, early) = (of(|alone, _| alone.is_none()), of(|alone, ordered| alone.is_some() && ordered.is_none()));
+    match (missed.is_empty(), early.is_empty()) {
+        (true, true) => (CheckResult::Shown, "all of it".to_owned()),
+        (false, _) => (CheckResult::CannotBeShown, format!("not that it {}", words(&missed))),
+        (true, false) => (CheckResult::CannotBeShown, format!("too early against the other: {}", words(&early))),
+    }
+}
+
+/// The states of somebody until the contact, those of the other one, and when its front was in the junction.
+struct Way<'a> {
+    states: &'a [ActorState],
+    other: Option<Other<'a>>,
+    entered: Option<usize>,
+}
+
+/// The other one's states, half of the length of both, and how far the middle of who has passed it is ahead of its middle. [m]
+#[derive(Clone, Copy)]
+struct Other<'a> {
+    states: &'a [ActorState],
+    half_m: f64,
+    beyond_m: f64,
+}
+
+impl Way<'_> {
+    fn speed(&self, at: usize) -> f64 {
+        self.states[at].speed()
+    }
+
+    /// When each of the told acts begins, one after the other; none of them before the other one's behind which it is told, whose times
+    /// these are.
+    fn times(&self, told: &[Doing], others: &[(u32, usize)]) -> Vec<Option<usize>> {
+        // Who goes aside or turns may have entered before.
+        let (mut from, mut since) = (0, 0);
+        let begins = |doing: &Doing| {
+            // Who stands may have stood before.
+            let bound = doing.after_other.filter(|_| doing.act != Act::Hold);
+            // Behind what cannot be seen it is behind the last that can be before that.
+            let behind = others.iter().filter(|(step, _)| bound.is_some_and(|bound| *step <= bound));
+            let behind = behind.max_by_key(|(step, _)| *step);
+            let least = behind.map_or(0, |(_, at)| at.saturating_sub(doing.before_other()));
+            let earliest = if doing.is_entry() { since } else { from };
+            let at = self.begins(*doing, earliest.max(least))?;
+            // What was under way then had begun before; who goes aside may go on to.
+            if at == least && from < least && !doing.goes_aside() && self.begins(*doing, from) != Some(at) {
+                return None;
+            }
+            let least = if doing.is_entry() { from } else { 0 };
+            from = at.saturating_sub(OVERLAP).max(least);
+            if !doing.is_aside() {
+                since = from;
+            }
+            Some(at)
+        };
+        told.iter().map(begins).collect()
+    }
+
+    fn is_still(&self, at: usize) -> bool {
+        self.states[at].velocity().length() < STANDS_MPS
+    }
+
+    fn last(&self) -> usize {
+        self.states.len() - 1
+    }
+
+    /// The first step from this one on at which a value, of that step and a later one, begins to come to this much and does.
+    fn comes_to(&self, from: usize, least: f64, value: impl Fn(usize, usize) -> f64) -> Option<usize> {
+        let until = |at: usize, steps: usize| (at + steps).min(self.last());
+        (from..self.last()).find(|at| {
+            value(*at, until(*at, SOON)) > SOON_SHARE * least
+                && (at + 1..=until(*at, LONGEST)).any(|then| value(*at, then) > least)
+        })
+    }
+
+    /// How far it is ahead of the other one's middle at a step, the way that it goes itself; along that one, but where it stands across. [m]
+    fn ahead_m(&self, other: &[ActorState], at: usize) -> f64 {
+        let (own, other) = (&self.states[at], &other[at.min(other.len() - 1)]);
+        let turned = math::wrap_angle(own.heading - other.heading).abs();
+        let along = |heading: f64| Vec2::from_heading(heading).dot(own.position() - other.position());
+        match turned {
+            turned if turned < ALONG_RAD => along(other.heading),
+            turned if turned > math::PI - ALONG_RAD => -along(other.heading),
+            _ => along(own.heading),
+        }
+    }
+
+    /// When it comes beside the other one, on the told side of that, behind which it was on its own way, from this step on; where it turned
+    /// then, when its front is beyond that one.
+    fn passes(&self, doing: Doing, from: usize) -> Option<usize> {
+        let Other { states, half_m, beyond_m } = self.other?;
+        let ahead_m = |at: usize| self.ahead_m(states, at);
+        let left = |at: usize| {
+            let other = &states[at.min(states.len() - 1)];
+            Vec2::from_heading(other.heading).cross(self.states[at].position() - other.position()) > 0.0
+        };
+        let least_m = if doing.is_pass_before_turn() { beyond_m } else { BESIDE_M - half_m };
+        let behind = (from..self.last()).find(|at| ahead_m(*at) < -half_m)?;
+        let beside = (behind..=self.last()).find(|at| ahead_m(*at) > least_m)?;
+        doing.side.is_none_or(|side| left(beside) == (side == LeftRight::Left)).then_some(beside)
+    }
+
+    /// When somebody stands, from this step on.
+    fn stands(&self, from: usize) -> Option<usize> {
+        (from..=self.last()).find(|at| self.is_still(*at))
+    }
+
+    fn begins(&self, doing: Doing, from: usize) -> Option<usize> {
+        let share = if doing.begun { BEGUN } else { 1.0 };
+        let towards = |value: f64| match doing.side {
+            Some(LeftRight::Left) => value,
+            Some(LeftRight::Right) => -value,
+            None => value.abs(),
+        };
+        // Seen along the road that it came by, until it turns off that: who straightens out does not go aside.
+        let first = self.states[0].heading;
+        let along = |heading: f64| match math::wrap_angle(heading - first).abs() < CHANGES_LANES_RAD {
+            true => first,
+            false => heading,
+        };
+        let aside = |at: usize, then: usize| {
+            let (now, then) = (&self.states[at], &self.states[then]);
+            towards(Vec2::from_heading(along(now.heading)).cross(then.position() - now.position()))
+        };
+        let turned = |at: usize, then: usize| {
+            towards(math::wrap_angle(self.states[then].heading - self.states[at].heading).to_degrees())
+        };
+        let slower = |at: usize, then: usize| self.speed(at) - self.speed(then);
+        let backs = || (from..=self.last()).find(|at| self.speed(*at) < -STANDS_MPS);
+        let changes = |at: usize, then: usize| {
+            let along = math::wrap_angle(self.states[then].heading - self.states[at].heading).abs() < CHANGES_LANES_RAD;
+            if along { aside(at, then) } else { 0.0 }
+        };
+        match least(doing.act)? {
+            Least::Aside(_) if doing.act == Act::LaneChange && doing.over && !doing.begun => {
+                self.comes_to(from, CHANGED_LANES_M, changes)
+            }
+            Least::Speed(by) if by < 0.0 => self.comes_to(from, -by, slower),
+            Least::Speed(by) => self.comes_to(from, by, |at, then| -slower(at, then)),
+            Least::Stand => self.stands(from),
+            // Who was coming to a stop has slowed for it.
+            Least::Halt if doing.begun => self.comes_to(from, CHANGES_MPS, slower),
+            Least::Halt => {
+                let halts = |at: &usize| self.is_still(*at) && !self.is_still(at - 1);
+                let came = |at: &usize| (0..*at).any(|before| self.speed(before).abs() > CAME_MPS);
+                (from.max(1)..=self.last()).find(|at| halts(at) && came(at))
+            }
+            Least::Start => {
+                let stood = self.stands(from)?;
+                (stood..self.last()).find(|at| self.is_still(*at) && !self.is_still(at + 1))
+            }
+            Least::Back => backs(),
+            Least::Aside(by) => self.comes_to(from, share * by, aside),
+            Least::Turn(by) => self.comes_to(from, share * by, turned),
+            Least::By if doing.begun => self.comes_to(from, BEGUN_PASS_M, aside),
+            Least::By => self.passes(doing, from),
+            Least::In => self.entered.filter(|at| *at >= from),
+            Least::Any => self
+                .comes_to(from, share * LEFT_LINE_M, aside)
+                .or_else(|| self.comes_to(from, share * BENDS_DEG, turned))
+                .or_else(backs),
+        }
+    }
+}
+
+/// For sentences.
+pub(super) fn words(told: &[Doing]) -> String {
+    let word = |doing: &Doing| {
+        let verb = match doing.act {
+            Act::Slow => "slowed",
+            Act::Accelerate => "gained speed",
+            Act::Stop => "stopped",
+            Act::Hold => "stood",
+            Act::SetOff => "set off",
+            Act::Reverse => "reversed",
+            Act::LaneChange => "changed lanes",
+            Act::Drift => "went aside",
+            Act::Swerve => "swerved",
+            Act::Turn => "turned",
+            Act::UTurn => "turned round",
+            Act::PullOut => "pulled out",
+            Act::PullOver => "pulled over",
+            Act::Pass => "passed",
+            Act::Enter => "entered the junction",
+            _ => "parked",
+        };
+        let sideless =
+            matches!(doing.act, Act::Stop | Act::Hold | Act::SetOff | Act::Slow | Act::Accelerate | Act::Reverse);
+        let side = match doing.side.filter(|_| !sideless) {
+            Some(LeftRight::Left) if doing.act == Act::Pass => " on the left",
+            Some(LeftRight::Right) if doing.act == Act::Pass => " on the right",
+            Some(LeftRight::Left) => " to the left",
+            Some(LeftRight::Right) => " to the right",
+            None => "",
+        };
+        format!("{}{verb}{side}", if doing.begun { "began: " } else { "" })
+    };
+    told.iter().map(word).collect::<Vec<_>>().join(", ")
+}

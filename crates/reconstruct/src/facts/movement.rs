@@ -1,0 +1,274 @@
+//! Told movements, held against the way that was driven.
+
+use crate::told::side::{Side, Turning};
+use crate::usual::STANDS_MPS;
+use recrash_model::geometry::Vec2;
+use recrash_model::math;
+use recrash_model::metrics::CheckResult;
+use recrash_model::rollout::{ActorState, ActorTrack};
+use recrash_model::template::Movement;
+use recrash_roads::{RoadPart, Scenario};
+
+/// Who changes lanes has left the middle of its own by at least this: the box reaches the next one. [m]
+const CHANGED_M: f64 = 0.8;
+
+/// Who leaves its lane, or pulls out or in, has left its line by at least this. [m]
+pub(super) const LEFT_LINE_M: f64 = 0.5;
+
+/// Nobody parks faster. [m/s]
+const PARKS_MPS: f64 = 5.0;
+
+/// Who passes is faster by this. [m/s]
+const FASTER_MPS: f64 = 0.3;
+
+/// Who has come beside another is beside so much of it. [m]
+const BESIDE_M: f64 = 1.0;
+
+/// Who turns has turned by more than this at the contact, or by more where it is to meet the other head-on, or has all but done it;
+/// straight on is less than that, and who turns round has turned by more. [deg]
+const TURNS_DEG: f64 = 20.0;
+const TURNS_WIDE_DEG: f64 = 60.0;
+const TURNED_DEG: f64 = 50.0;
+const STRAIGHT_DEG: f64 = 50.0;
+const ROUND_DEG: f64 = 60.0;
+
+/// Who goes straight on along a lane, and is not told to have left it, has turned by no more. [deg]
+const KEEPS_DEG: f64 = 16.0;
+
+/// One who moves, and what it meets.
+pub(super) struct Way<'a> {
+    pub(crate) scenario: &'a Scenario,
+    pub(crate) track: &'a ActorTrack,
+    /// The other; nothing where it is a thing.
+    pub(crate) other: Option<&'a ActorTrack>,
+    /// Where the other is at the contact.
+    pub(crate) met: ActorState,
+    /// Of the contact. [s]
+    pub(crate) time_s: f64,
+    /// It comes along a lane, and nobody tells that it left that.
+    pub(crate) keeps_lane: bool,
+    /// Direction of the road that the ego came along. [rad]
+    pub(crate) road_rad: f64,
+}
+
+impl Way<'_> {
+    fn until(&self) -> &[ActorState] {
+        let step = ((self.time_s * 10.0).floor() as usize).min(self.track.states.len() - 1);
+        &self.track.states[..=step]
+    }
+
+    /// How far it has turned until the contact, to the left. [deg]
+    fn turned_deg(&self) -> f64 {
+        let turned: f64 = self.until().windows(2).map(|pair| math::wrap_angle(pair[1].heading - pair[0].heading)).sum();
+        turned.to_degrees()
+    }
+
+    /// How far it is beside the line that it began on, to the left. [m]
+    fn beside_m(&self) -> f64 {
+        let (first, last) = (&self.until()[0], &self.until()[self.until().len() - 1]);
+        Vec2::from_heading(first.heading).cross(last.position() - first.position())
+    }
+
+    /// By how much it has come nearer to the other's line, along the road. [m]
+    fn comes_nearer_m(&self) -> f64 {
+        let road = Vec2::from_heading(self.road_rad);
+        let off_m = |state: &ActorState| road.cross(state.position() - self.met.position()).abs();
+        off_m(&self.until()[0]) - off_m(&self.until()[self.until().len() - 1])
+    }
+
+    /// The angle between it and the road that the ego came along, at the contact. [deg]
+    fn slant_deg(&self) -> f64 {
+        let last = &self.until()[self.until().len() - 1];
+        let along = math::wrap_angle(last.heading - self.road_rad).to_degrees().abs();
+        along.min(180.0 - along)
+    }
+
+    fn stood(&self) -> bool {
+        self.until().iter().any(|state| state.velocity().length() < STANDS_MPS)
+    }
+
+    fn reversed(&self) -> bool {
+        self.until().iter().any(|state| state.speed() < -STANDS_MPS)
+    }
+
+    /// Whether it came from behind the other, and is faster, or has come beside it.
+    fn passed(&self) -> bool {
+        let sets_out = self.until().iter().position(|state| state.velocity().length() > STANDS_MPS).unwrap_or(0);
+        let (first, last) = (&self.until()[sets_out], &self.until()[self.until().len() - 1]);
+        let ahead = Vec2::from_heading(last.heading);
+        let other = self.other.map_or(self.met, |other| other.states[sets_out.min(other.states.len() - 1)]);
+        let faster = (last.velocity() - self.met.velocity()).dot(ahead) > FASTER_MPS;
+        let half_m = 0.5 * (self.track.length_m + self.other.map_or(0.0, |other| other.length_m));
+        let beside = (self.met.position() - last.position()).dot(ahead) < half_m - BESIDE_M;
+        (faster || beside) && (other.position() - first.position()).dot(ahead) > 0.0
+    }
+
+    /// Whether it goes against the direction of the lane it is on.
+    fn against(&self) -> Option<bool> {
+        is_against(self.scenario, &self.until()[self.until().len() - 1])
+    }
+
+    fn starts_off_lanes(&self) -> bool {
+        let (first, network) = (&self.track.states[0], self.scenario.network());
+        let lane = network.lane_at(first.position(), first.heading);
+        lane.is_none_or(|lane| matches!(network.road(network.lane(lane).road).part, RoadPart::Beside(_)))
+    }
+}
+
+/// Whether somebody faces against the direction of the lane it is on; nothing where it is on none.
+pub(crate) fn is_against(scenario: &Scenario, state: &ActorState) -> Option<bool> {
+    let network = scenario.network();
+    // The lane it is on, whichever way it faces.
+    let lanes = [0.0, math::PI].map(|turn| network.lane_at(state.position(), state.heading + turn));
+    let [along, against] = lanes;
+    let (along, against) = (along?, against?);
+    let faces =
+        |id| math::wrap_angle(network.lane(id).heading(network.lane(id).local(state.position()).0) - state.heading);
+    let (first, second) = (faces(along).abs(), faces(against).abs());
+    Some(first > math::FRAC_PI_2 && second > math::FRAC_PI_2)
+}
+
+/// Who drives at an angle to the road is at least at this one, and who leaves the kerb or parks has turned by more where it is not
+/// aside. [deg]
+const SLANTS_DEG: f64 = 15.0;
+const BENDS_DEG: f64 = 9.5;
+
+/// What is expected, whether it is shown, and what is seen.
+pub(super) fn check(side: &Side, way: &Way<'_>) -> Option<(String, CheckResult, String)> {
+    let movement = side.movement?;
+    let (turned, beside_m) = (way.turned_deg(), way.beside_m());
+    let sideways = |least_m: f64| (beside_m.abs() >= least_m, format!("{:.1} m aside", beside_m.abs()));
+    let bent = || (turned_words(turned), turned.abs());
+    let (shown, observed) = match movement {
+        Movement::Stopped | Movement::Parked => {
+            let stood = way.stood();
+            let words = if stood { "it stood" } else { "it never stood" };
+            (
+                stood,
+                if side.turning == Turning::No {
+                    words.to_owned()
+                } else {
+                    format!("{words}, {}", turned_words(turned))
+                },
+            )
+        }
+        Movement::ChangingLanes | Movement::Merging if side.merges_in => {
+            let nearer_m = way.comes_nearer_m();
+            (nearer_m >= CHANGED_M, format!("{nearer_m:.1} m nearer to the other's line"))
+        }
+        Movement::ChangingLanes | Movement::Merging | Movement::CrossingIntoOpposingLane => sideways(CHANGED_M),
+        Movement::LaneDeparture => sideways(LEFT_LINE_M),
+        Movement::Passing => {
+            let passed = way.passed();
+            if !passed && way.met.speed().abs() > STANDS_MPS {
+                // It passes somebody else.
+                return Some((word(side), CheckResult::CannotBeShown, "whom it passes is not drawn".to_owned()));
+            }
+            (passed, if passed { "it came by" } else { "it did not come by" }.to_owned())
+        }
+        Movement::Backing => {
+            let (reversed, slant) = (way.reversed(), way.slant_deg());
+            if side.backs_in {
+                return Some(backs_in(side, way));
+            }
+            let words = if reversed { "it went backwards" } else { "it did not go backwards" };
+            (
+                reversed && (side.slants.is_none() || slant >= SLANTS_DEG),
+                format!("{words}, at {slant:.0} degrees to the road"),
+            )
+        }
+        Movement::EnteringTraffic => {
+            let (words, degrees) = bent();
+            let out = way.starts_off_lanes() || way.stood();
+            (
+                out && (beside_m.abs() >= LEFT_LINE_M || degrees >= BENDS_DEG),
+                format!("{words}, {:.1} m aside", beside_m.abs()),
+            )
+        }
+        Movement::ParkingManeuver => {
+            if side.backs_in {
+                return Some(backs_in(side, way));
+            }
+            let (words, degrees) = bent();
+            let slow = way.until()[way.until().len() - 1].velocity().length() < PARKS_MPS;
+            let turns = way.reversed() || beside_m.abs() >= LEFT_LINE_M || degrees >= BENDS_DEG;
+            (slow && turns, format!("{words}, {:.1} m aside", beside_m.abs()))
+        }
+        Movement::WrongWay => match way.against() {
+            None => return Some((word(side), CheckResult::CannotBeShown, "on no lane".to_owned())),
+            Some(against) => (against, if against { "against its lane" } else { "along its lane" }.to_owned()),
+        },
+        Movement::NmWaiting | Movement::NmOnSidewalk => {
+            return Some((word(side), CheckResult::CannotBeShown, "no such place is drawn".to_owned()));
+        }
+        Movement::Straight
+        | Movement::LeftTurn
+        | Movement::RightTurn
+        | Movement::UTurn
+        | Movement::NmCrossing
+        | Movement::NmAlongside
+        | Movement::NmInRoadway => {
+            let fits = match side.turning {
+                Turning::No => side.turns_later || turned.abs() < if way.keeps_lane { KEEPS_DEG } else { STRAIGHT_DEG },
+                Turning::Round => turned.abs() > ROUND_DEG,
+                Turning::Left | Turning::Right => true,
+            };
+            (fits, turned_words(turned))
+        }
+    };
+    let least = match (side.turned, side.turns_wide) {
+        (true, _) => TURNED_DEG,
+        (false, true) => TURNS_WIDE_DEG,
+        (false, false) => TURNS_DEG,
+    };
+    let turns = match side.turning {
+        Turning::Left | Turning::Right if side.turns_later => turned.abs() < STRAIGHT_DEG,
+        Turning::Left => turned > least,
+        Turning::Right => turned < -least,
+        Turning::No | Turning::Round => true,
+    };
+    let (dodges, dodged) = sideways(LEFT_LINE_M);
+    let shown = shown && turns && (dodges || !side.dodges);
+    let observed = if side.dodges { format!("{observed}, {dodged}") } else { observed };
+    Some((word(side), if shown { CheckResult::Shown } else { CheckResult::NotShown }, observed))
+}
+
+/// Who backs into a space at the kerb has come out of its line by so much while it reversed, and was at an angle to it. [m, deg]
+const BACKED_IN_M: f64 = 0.8;
+const BACKED_IN_DEG: f64 = 10.0;
+
+/// Whether somebody backed into a space at the kerb.
+fn backs_in(side: &Side, way: &Way<'_>) -> (String, CheckResult, String) {
+    let until = way.until();
+    let backs = until.iter().rposition(|state| state.speed() > -STANDS_MPS).unwrap_or(0);
+    let (first, last) = (&until[backs], &until[until.len() - 1]);
+    let aside_m = Vec2::from_heading(first.heading).cross(last.position() - first.position()).abs();
+    let angle = |state: &ActorState| math::wrap_angle(state.heading - first.heading).to_degrees().abs();
+    let most_deg = until[backs..].iter().map(angle).fold(0.0, f64::max);
+    let shown = aside_m >= BACKED_IN_M && most_deg >= BACKED_IN_DEG;
+    let result = if shown { CheckResult::Shown } else { CheckResult::NotShown };
+    (word(side) + ", towards the kerb", result, format!("{aside_m:.1} m aside in reverse, by {most_deg:.0} degrees"))
+}
+
+fn word(side: &Side) -> String {
+    let turn = match (side.turning, side.movement) {
+        (_, Some(Movement::LeftTurn | Movement::RightTurn)) => "",
+        (Turning::Left, _) => ", after a left turn",
+        (Turning::Right, _) => ", after a right turn",
+        (Turning::No | Turning::Round, _) => "",
+    };
+    let more = match (side.dodges, side.slants.is_some()) {
+        (true, _) => ", and aside",
+        (_, true) => ", at an angle",
+        _ => "",
+    };
+    side.movement.map_or(String::new(), |movement| movement.label().to_lowercase() + turn + more)
+}
+
+fn turned_words(degrees: f64) -> String {
+    match degrees.round() {
+        d if d >= 1.0 => format!("{d:.0} degrees to the left"),
+        d if d <= -1.0 => format!("{:.0} degrees to the right", -d),
+        _ => "straight on".to_owned(),
+    }
+}

@@ -1,0 +1,155 @@
+//! From where the partner is told to come, held against where it began.
+
+use crate::facts::keeping::KEEPS_M;
+use crate::told::crash::Told;
+use crate::told::side::{Slant, Turning, is_on_foot};
+use crate::usual::{LANE_M, STANDS_MPS};
+use recrash_model::account::{ContactState, LeftRight, Origin};
+use recrash_model::geometry::Vec2;
+use recrash_model::math;
+use recrash_model::rollout::ActorTrack;
+use recrash_model::template::Movement;
+
+/// Who is less aside than this is beside nobody. [m]
+const ASIDE_M: f64 = 1.0;
+
+/// Who is farther aside than this does not come along the ego's lane. [m]
+const BESIDE_M: f64 = 5.0;
+
+/// Who comes along the opposite side behind the ego is not farther aside than this. [m]
+const OPPOSITE_M: f64 = 8.5;
+
+/// Who comes over from its own side, or from the kerb, is farther aside than this when it sets out. [m]
+const OVER_M: f64 = 2.0;
+
+/// Who turned off before it reversed is so much farther aside. [m]
+const TURNED_OFF_M: f64 = 3.0;
+
+pub(super) fn origin_words(told: &Told) -> String {
+    let more = match (told.comes_over, told.comes_round, told.comes_across()) {
+        (true, ..) => ", on its own side",
+        (_, true, _) => ", behind",
+        (_, _, true) => ", across",
+        _ => "",
+    };
+    told.origin.words() + more
+}
+
+/// Whether the partner comes from where it is told, seen from the ego when it sets out.
+pub(super) fn origin(told: &Told, ego: &ActorTrack, other: &ActorTrack, time_s: f64) -> (bool, String) {
+    let (ego_track, other_track) = (ego, other);
+    let state = told.cp.state;
+    let on_foot = is_on_foot(other.kind);
+    // Seen when it sets out.
+    let sets_out = other.states.iter().position(|state| state.velocity().length() > STANDS_MPS).unwrap_or(0);
+    let stands_then = sets_out > 0;
+    // Of who backs into a space, or had turned off: when it begins to back.
+    let backs = other.states.iter().position(|state| state.speed() < -STANDS_MPS);
+    let turned_off = matches!(told.cp.slants, Some(Slant::Stood { .. }));
+    let sets_out = backs.filter(|_| told.cp.backs_in || turned_off).unwrap_or(sets_out);
+    let beside_m = BESIDE_M + if turned_off { TURNED_OFF_M } else { 0.0 };
+    let met = &ego.states[((time_s * 10.0) as usize).min(ego.states.len() - 1)];
+    let (ego, other) = (&ego.states[sets_out.min(ego.states.len() - 1)], &other.states[sets_out]);
+    // Who comes out of a driveway is behind the place where an ego stands then.
+    let stands = told.sv.state.stands() && matches!(told.origin, Origin::Driveway { .. });
+    let behind_met = (other.position() - met.position()).dot(Vec2::from_heading(met.heading)) < 0.0;
+    let forward = Vec2::from_heading(ego.heading);
+    let way = other.position() - ego.position();
+    let (ahead, left) = (way.dot(forward), forward.cross(way));
+    let facing = math::wrap_angle(other.heading - ego.heading).to_degrees();
+    // Who reverses moves against where it faces.
+    let moves = if state == ContactState::Reversing {
+        math::wrap_angle((facing + 180.0).to_radians()).to_degrees()
+    } else {
+        facing
+    };
+    let on = |side: LeftRight, angle: f64| if side == LeftRight::Left { angle < 0.0 } else { angle > 0.0 };
+    let beside = |side: LeftRight| if side == LeftRight::Left { left > ASIDE_M } else { left < -ASIDE_M };
+    let same_way = match told.comes_across() {
+        true => (30.0..150.0).contains(&facing.abs()),
+        false => facing.abs() < 60.0 || state == ContactState::Reversing,
+    };
+    let shown = match told.origin {
+        Origin::Behind => {
+            let lane_m = if told.leaves_opposite() { OPPOSITE_M } else { BESIDE_M };
+            let in_line = !(told.begins_in_line() && told.is_beside_line(ego_track, other_track));
+            ahead < 2.0 && same_way && left.abs() < lane_m && in_line
+        }
+        Origin::Ahead => {
+            let faces = same_way || on_foot && !told.comes_across() || state.stands();
+            ahead > -2.0 && faces && left.abs() < beside_m
+        }
+        Origin::Opposite => facing.abs() > 120.0 && (!told.comes_over || left > OVER_M),
+        Origin::Beside { side } => (facing.abs() < 60.0 || told.comes_across()) && same_way && beside(side),
+        Origin::Cross { side } => (30.0..150.0).contains(&moves.abs()) && on(side, moves),
+        Origin::Stall { side } | Origin::Driveway { side } | Origin::Parked { side } | Origin::Sidewalk { side } => {
+            let crosswise = (30.0..150.0).contains(&facing.abs());
+            let out = crosswise || !matches!(told.origin, Origin::Stall { .. } | Origin::Driveway { .. });
+            let from_there = !(told.stood_beside() || told.backs_out())
+                || stands_then
+                    && left.abs() > OVER_M
+                    && out
+                    && (!told.comes_round || ahead < 0.0 || stands && behind_met);
+            side.is_none_or(beside) && from_there || state.stands()
+        }
+        Origin::Above => false,
+    };
+    let along = if ahead < 0.0 { "behind" } else { "ahead" };
+    let aside = if left < 0.0 { "to the right" } else { "to the left" };
+    let seen = format!("{:.0} m {along}, {:.0} m {aside}, facing {facing:.0} degrees", ahead.abs(), left.abs());
+    (shown, seen)
+}
+
+/// Who is behind somebody is not abreast of it; and who is in the next lane is no farther aside. [m]
+const BEHIND_M: f64 = 0.0;
+const NEXT_M: f64 = 1.5 * LANE_M + KEEPS_M;
+
+impl Told {
+    /// Whether a partner that is told beside the ego, and in no farther lane, is farther off than the next one.
+    pub(super) fn is_far_beside(&self, ego: &ActorTrack, track: &ActorTrack) -> bool {
+        let (own, other) = (&ego.states[0], &track.states[0]);
+        let aside_m = Vec2::from_heading(own.heading).cross(other.position() - own.position()).abs();
+        let beside = matches!(self.origin, Origin::Beside { .. }) && self.comes_along_lanes();
+        let aside = self.sv_aside().is_some();
+        beside && !aside && (self.cp.lane.is_none() || self.sv.lane.is_none()) && !self.is_at_kerb() && aside_m > NEXT_M
+    }
+
+    /// Whether a partner that is told behind the ego is beside its lane, or ahead of it.
+    pub(super) fn is_beside_line(&self, ego: &ActorTrack, track: &ActorTrack) -> bool {
+        let sets_out = track.states.iter().position(|state| state.velocity().length() > STANDS_MPS).unwrap_or(0);
+        let (own, other) = (&ego.states[sets_out.min(ego.states.len() - 1)], &track.states[sets_out]);
+        let (forward, way) = (Vec2::from_heading(own.heading), other.position() - own.position());
+        let overlap_m = 0.5 * (ego.width_m + track.width_m) - forward.cross(way).abs();
+        self.is_in_line_behind() && (overlap_m < 0.0 || way.dot(forward) > BEHIND_M)
+    }
+
+    /// Whether the partner is told to be behind the ego, and nothing tells that it was in another lane then.
+    fn is_in_line_behind(&self) -> bool {
+        let straight = !matches!(self.sv.turning, Turning::Left | Turning::Right);
+        let other_lane = self.cp.lane.is_some()
+            || self.leaves_opposite()
+            || self.cp.changed_lanes
+            || self.cp.movement == Some(Movement::EnteringTraffic);
+        self.origin == Origin::Behind
+            && straight
+            && !other_lane
+            && self.sv_aside().is_none()
+            && self.comes_along_lanes()
+    }
+
+    /// Whether the partner has to begin in the ego's lane: it is told to be behind, and not to have come by, or over, without a stand there.
+    fn begins_in_line(&self) -> bool {
+        let comes_by = matches!(
+            self.cp.movement,
+            Some(
+                Movement::Passing
+                    | Movement::ChangingLanes
+                    | Movement::Merging
+                    | Movement::CrossingIntoOpposingLane
+                    | Movement::LaneDeparture
+            )
+        );
+        let drives = self.cp.state != ContactState::Reversing;
+        self.is_in_line_behind() && drives && (!comes_by || self.cp.stood_first) && !self.comes_along_kerb()
+    }
+}

@@ -1,0 +1,197 @@
+//! Told signals and signs, held against who drove past them when.
+
+use crate::draft::signals::arm_of;
+use crate::told::crash::Told;
+use crate::usual::STANDS_MPS;
+use recrash_model::account::{Control as Said, ControlDevice, Obeyed, Origin, SignalState};
+use recrash_model::geometry::Vec2;
+use recrash_model::metrics::CheckResult;
+use recrash_model::rollout::{ActorTrack, STEP_S};
+use recrash_model::scenario::{Aspect, Control, Device, MapSpec};
+use recrash_roads::{ControlPlacement, Scenario};
+
+/// What changed within this time has just changed. [s]
+const JUST_S: f64 = 10.0;
+
+/// Who stands no farther before a line stands at it. [m]
+const AT_LINE_M: f64 = 8.0;
+
+/// Who is no farther before a line comes to it. [m]
+const COMES_TO_M: f64 = 40.0;
+
+/// A line is taken to be so much longer on both sides. [m]
+const BESIDE_M: f64 = 1.5;
+
+/// A told signal or sign, for sentences.
+pub(super) fn words(said: Said) -> String {
+    let device = match said.device {
+        ControlDevice::Signal => "signal",
+        ControlDevice::StopSign => "stop sign",
+        ControlDevice::YieldSign => "yield sign",
+    };
+    let state = match said.state {
+        None => "",
+        Some(SignalState::Red) => "red ",
+        Some(SignalState::Yellow) => "yellow ",
+        Some(SignalState::Green) => "green ",
+        Some(SignalState::TurnedGreen) => "just green ",
+        Some(SignalState::TurnedRed) => "just red ",
+    };
+    let obeyed = match said.obeyed {
+        None => "",
+        Some(Obeyed::Yes) => ", obeyed",
+        Some(Obeyed::No) => ", not obeyed",
+    };
+    format!("{state}{device}{obeyed}")
+}
+
+/// The arm at which the partner's own signal or sign stands, where it comes by a crossing road; any other is not its own.
+pub(super) fn own_arm(told: &Told, scenario: &Scenario) -> Option<&'static str> {
+    let arm = Some(arm_of(told.origin)).filter(|_| matches!(told.origin, Origin::Cross { .. }));
+    arm.filter(|arm| scenario.draft().control.iter().any(|control| control.at == *arm))
+}
+
+/// Whether a told signal or sign stood before somebody, at its arm where that is known, showed what is told, and was obeyed or not as
+/// told. Who came to a stand for a light that changed did so before it was green.
+pub(super) fn check(
+    said: Said,
+    arm: Option<&str>,
+    scenario: &Scenario,
+    track: &ActorTrack,
+    contact_s: f64,
+) -> (CheckResult, String) {
+    let until = ((contact_s / STEP_S).floor() as usize).min(track.states.len() - 1);
+    let junction = matches!(&scenario.draft().map, MapSpec::G(map) if !map.junctions.is_empty());
+    if scenario.draft().control.is_empty() && !junction {
+        return (CheckResult::CannotBeShown, "there is no junction to draw it at".to_owned());
+    }
+    let all = scenario.draft().control.iter().zip(scenario.control());
+    let all = all.filter(|(control, _)| arm.is_none_or(|arm| control.at == arm));
+    let met = all.filter_map(|(control, placed)| Some((control, line_of(scenario, control, placed)?)));
+    let found = met.filter_map(|(control, line)| Some((control, passage(track, &line, until)?))).next();
+    let Some((control, passage)) = found else {
+        return (CheckResult::NotShown, "none on its way".to_owned());
+    };
+    let is_device = matches!(
+        (&control.device, said.device),
+        (Device::Signal { .. }, ControlDevice::Signal)
+            | (Device::StopSign {}, ControlDevice::StopSign)
+            | (Device::YieldSign {}, ControlDevice::YieldSign)
+    );
+    if !is_device {
+        return (CheckResult::NotShown, "another device".to_owned());
+    }
+    let time_s = passage.crossed_s.unwrap_or(contact_s);
+    let shows = |at_s: f64| control.device.aspect(at_s);
+    let just = |was: &[Aspect]| {
+        let back = |tenth: i32| shows((contact_s - 0.1 * f64::from(tenth)).max(0.0));
+        (0..=(JUST_S * 10.0) as i32).any(|tenth| back(tenth).is_some_and(|seen| was.contains(&seen)))
+    };
+    let stood = &passage.stands_s;
+    let waited = stood.is_empty() || stood.iter().any(|at_s| shows(*at_s) != Some(Aspect::Green));
+    let state = match said.state {
+        None => true,
+        Some(SignalState::Red) => {
+            [Some(time_s), passage.stood_s].into_iter().flatten().any(|at_s| shows(at_s) == Some(Aspect::Red))
+        }
+        Some(SignalState::Green) => shows(time_s) == Some(Aspect::Green),
+        Some(SignalState::Yellow) => shows(time_s) == Some(Aspect::Yellow),
+        Some(SignalState::TurnedGreen) => shows(contact_s) == Some(Aspect::Green) && just(&[Aspect::Red]) && waited,
+        Some(SignalState::TurnedRed) => {
+            shows(contact_s) == Some(Aspect::Red) && just(&[Aspect::Green, Aspect::Yellow]) && waited
+        }
+    };
+    let kept = match control.device {
+        Device::StopSign {} => passage.crossed_s.is_none() || passage.stood_s.is_some(),
+        Device::YieldSign {} => true,
+        Device::Signal { .. } => passage.crossed_s.is_none_or(|at_s| shows(at_s) != Some(Aspect::Red)),
+    };
+    let obeyed = match said.obeyed {
+        None => true,
+        Some(Obeyed::Yes) => kept,
+        Some(Obeyed::No) => !kept,
+    };
+    let color = shows(time_s).map_or(String::new(), |aspect| format!("{} ", aspect.label()));
+    let did = match passage.crossed_s {
+        None => "it stayed before the line".to_owned(),
+        Some(at_s) => format!("it crossed the line at {at_s:.1} s"),
+    };
+    let result = if state && obeyed { CheckResult::Shown } else { CheckResult::NotShown };
+    (result, format!("{color}at {time_s:.1} s, {did}"))
+}
+
+/// Whether somebody drives over a line while its signal is red.
+pub(crate) fn runs_red(scenario: &Scenario, track: &ActorTrack) -> bool {
+    let all = scenario.draft().control.iter().zip(scenario.control());
+    all.filter_map(|(control, placed)| Some((control, line_of(scenario, control, placed)?))).any(|(control, line)| {
+        let crossed_s = passage(track, &line, track.states.len() - 1).and_then(|passage| passage.crossed_s);
+        crossed_s.is_some_and(|at_s| control.device.aspect(at_s) == Some(Aspect::Red))
+    })
+}
+
+/// How somebody came by a stop line.
+struct Passage {
+    /// When its front crossed the line. [s]
+    crossed_s: Option<f64>,
+    /// When it stood at the line first. [s]
+    stood_s: Option<f64>,
+    /// When it came to stand on its way to the line. [s]
+    stands_s: Vec<f64>,
+}
+
+/// A stop line, and the direction across it.
+struct Line {
+    from: Vec2,
+    to: Vec2,
+    ahead: Vec2,
+}
+
+fn line_of(scenario: &Scenario, control: &Control, placed: &ControlPlacement) -> Option<Line> {
+    let network = scenario.network();
+    let [one, other] = *network.stop_lines(std::slice::from_ref(control)).first()?;
+    let &(lane, at_m) = placed.lines.first()?;
+    let along = (other - one) * (1.0 / (other - one).length().max(1e-9));
+    let ahead = Vec2::from_heading(network.lane(lane).heading(at_m));
+    Some(Line { from: one - along * BESIDE_M, to: other + along * BESIDE_M, ahead })
+}
+
+/// Whether somebody came along to this line until a step: it crossed it, or it is right before it.
+fn passage(track: &ActorTrack, line: &Line, until: usize) -> Option<Passage> {
+    let front = |step: usize| {
+        let state = &track.states[step];
+        state.position() + Vec2::from_heading(state.heading) * (0.5 * track.length_m)
+    };
+    let along = line.to - line.from;
+    let length = along.length();
+    let on = |point: Vec2| {
+        let share = (point - line.from).dot(along) / (length * length);
+        ((0.0..=1.0).contains(&share), (point - line.from).dot(line.ahead))
+    };
+    let mut stood_s = None;
+    let mut stands_s = Vec::new();
+    for step in 0..=until {
+        let (beside, past_m) = on(front(step));
+        let at_line = beside && (-AT_LINE_M..=0.5).contains(&past_m);
+        let stands = |step: usize| track.states[step].velocity().length() < STANDS_MPS;
+        if at_line && stands(step) {
+            stood_s = stood_s.or(Some(STEP_S * step as f64));
+        }
+        if stands(step) && beside && (-COMES_TO_M..=0.5).contains(&past_m) && (step == 0 || !stands(step - 1)) {
+            stands_s.push(STEP_S * step as f64);
+        }
+        if step > 0 {
+            let (was_beside, was_m) = on(front(step - 1));
+            if was_m <= 0.0 && past_m > 0.0 && (beside || was_beside) {
+                return Some(Passage { crossed_s: Some(STEP_S * step as f64), stood_s, stands_s });
+            }
+        }
+    }
+    let state = &track.states[until];
+    let (beside, past_m) = on(front(until));
+    let heads_there = Vec2::from_heading(state.heading).dot(line.ahead) > 0.5;
+    (beside && heads_there && (-COMES_TO_M..=0.5).contains(&past_m)).then_some(Passage {
+        crossed_s: None,
+        stood_s,
+        stands_s,
+    })
+}

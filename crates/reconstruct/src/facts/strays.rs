@@ -1,0 +1,110 @@
+//! Whether somebody strays: goes another way than is told, or than anybody drives.
+
+use crate::facts::contact::first_touch;
+use crate::facts::keeping::{self, ABSURD};
+use crate::facts::movement;
+use crate::facts::seen::Seen;
+use crate::told::crash::Told;
+use recrash_model::account::Origin;
+use recrash_model::geometry::Vec2;
+use recrash_model::kinds::PartnerKind;
+use recrash_model::math;
+use recrash_model::rollout::{ActorState, ActorTrack, EventKind, Rollout, STEP_S};
+use recrash_roads::{RoadPart, Scenario};
+
+/// Whether one of the others who are drawn is elsewhere than it is wanted, or goes on at red.
+pub(crate) fn others_stray(told: &Told, scenario: &Scenario, rollout: &Rollout) -> bool {
+    let time_s = first_touch(rollout).map_or(told.contact_s, |touch| touch.time_s);
+    !told.extras.is_empty() && Seen::new(told, rollout, time_s).strays(scenario)
+}
+
+/// Who turns back by more than this on its way swings. [deg]
+const MOST_BACK_DEG: f64 = 30.0;
+
+/// Who meets the other earlier or later than this has touched it elsewhere than was staged. [s]
+const AS_STAGED_S: f64 = 0.15;
+
+/// Whether a partner that drives along or across the road is beside it on its way to the contact, or swings one way and back the other, or
+/// touches the ego before or after it was to.
+/// Nobody tells that it did not.
+pub(crate) fn strays(told: &Told, scenario: &Scenario, rollout: &Rollout) -> bool {
+    let drives = !matches!(told.cp.kind, PartnerKind::Pedestrian | PartnerKind::Animal | PartnerKind::FixedObject);
+    let on_road = matches!(
+        told.origin,
+        Origin::Behind | Origin::Ahead | Origin::Beside { .. } | Origin::Opposite | Origin::Cross { .. }
+    );
+    let Some(touch) = first_touch(rollout).filter(|_| drives && on_road || told.edge.is_some()) else { return false };
+    if (touch.time_s - told.contact_s).abs() > AS_STAGED_S {
+        return true;
+    }
+    let Some(track) = touch.track else { return false };
+    let until = ((touch.time_s * 10.0) as usize).min(track.states.len() - 1);
+    if told.comes_along_kerb() && comes_from_strip(scenario, track, until) {
+        return true;
+    }
+    // Every second.
+    let beside = track.states[..=until].iter().step_by(10).any(|state| !scenario.network().on_road(state.position()));
+    let oncoming = |state: &ActorState| movement::is_against(scenario, state) == Some(true);
+    if told.keeps_direction() && track.states[..=until].iter().step_by(10).filter(|state| oncoming(state)).count() > 1 {
+        return true;
+    }
+    let off_road = |id: &str| {
+        let other = rollout.actors.iter().find(|track| track.id == id)?;
+        let until = until_touched(rollout, other, touch.time_s);
+        Some(until.iter().step_by(10).any(|state| !scenario.network().on_road(state.position())))
+    };
+    if keeping::is_tight(told.cp.kind, until_touched(rollout, track, touch.time_s)) || off_road("pusher") == Some(true)
+    {
+        return true;
+    }
+    let turns = track.states[..=until].windows(2).map(|pair| math::wrap_angle(pair[1].heading - pair[0].heading));
+    let (all, net) = turns.fold((0.0, 0.0), |(all, net), turn| (all + turn.abs(), net + turn));
+    beside || (all - net.abs()).to_degrees() > MOST_BACK_DEG
+}
+
+/// Where somebody was until the contact, or until another touched it.
+pub(super) fn until_touched<'a>(rollout: &Rollout, track: &'a ActorTrack, contact_s: f64) -> &'a [ActorState] {
+    let number = rollout.actors.iter().position(|other| other.id == track.id);
+    let touched = rollout.events.iter().find(|event| match event.kind {
+        EventKind::Contact { a, b, .. } => number == Some(a) || number == Some(b),
+        _ => false,
+    });
+    let until_s = touched.map_or(contact_s, |event| event.time_s.min(contact_s));
+    &track.states[..=((until_s / STEP_S) as usize).min(track.states.len() - 1)]
+}
+
+/// For how long the partner is off its lane.
+pub(crate) fn off_lane_s(told: &Told, scenario: &Scenario, rollout: &Rollout) -> Option<f64> {
+    let touch = first_touch(rollout)?;
+    keeping::off_lane_s(told, scenario, touch.track.filter(|track| track.id == "cp")?, touch.time_s)
+}
+
+/// How far the partner's way is from what nobody tells otherwise: half seconds off its lane, weaving, and leaving whom it rubs along.
+pub(crate) fn off_its_way(told: &Told, scenario: &Scenario, rollout: &Rollout) -> usize {
+    let off_s = off_lane_s(told, scenario, rollout).unwrap_or(0.0);
+    let touch =
+        first_touch(rollout).and_then(|touch| Some((touch.track.filter(|track| track.id == "cp")?, touch.time_s)));
+    let ego = rollout.ego_track();
+    let weaves = |(track, time_s)| {
+        keeping::weaves(told, track, time_s)
+            + usize::from(keeping::leaves_whom_it_passes(told, ego, track, time_s))
+            + if told.is_beside_line(ego, track) || told.is_far_beside(ego, track) { ABSURD } else { 0 }
+    };
+    (2.0 * off_s) as usize + touch.map_or(0, weaves)
+}
+
+/// Who drives beside the kerb until so long before the contact, with its flank by so much, comes from there. [s, m]
+const BESIDE_S: f64 = 1.0;
+const BESIDE_M: f64 = 0.3;
+
+/// Whether somebody who comes along the lane beside which the ego is parked has driven where others park before it came to the ego.
+fn comes_from_strip(scenario: &Scenario, track: &ActorTrack, until: usize) -> bool {
+    let network = scenario.network();
+    let flank_m = 0.5 * track.width_m - BESIDE_M;
+    let before = until.saturating_sub((BESIDE_S / STEP_S) as usize);
+    track.states[..before].iter().any(|state| {
+        let flank = state.position() - Vec2::from_heading(state.heading).left() * flank_m;
+        let lane = network.lane_at(flank, state.heading);
+        lane.is_some_and(|lane| matches!(network.road(network.lane(lane).road).part, RoadPart::Beside(_)))
+    })
+}

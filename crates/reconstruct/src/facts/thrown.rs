@@ -1,0 +1,32 @@
+//! From where who touched the partner first is told to come, held against its way.
+
+use crate::told::crash::Told;
+use crate::told::others::Thrower;
+use crate::usual::LANE_M;
+use recrash_model::account::LeftRight;
+use recrash_model::geometry::Vec2;
+use recrash_model::math;
+use recrash_model::rollout::ActorTrack;
+
+/// Who is told to come from a side is so much of a lane beside where it touches, at first; and from a crossing road at such an angle. [-, rad]
+const ASIDE: f64 = 0.35;
+const CROSSES_RAD: (f64, f64) = (0.6, 2.5);
+
+/// Whether who touched the partner first came from where it is told to.
+pub(super) fn comes_as_told(told: &Told, ego: &ActorTrack, [partner, other]: [&ActorTrack; 2], step: usize) -> bool {
+    let road = Vec2::from_heading(ego.states[0].heading);
+    let met = partner.states[step.min(partner.states.len() - 1)].position();
+    let of_ego = ego.states[step.min(ego.states.len() - 1)].position();
+    // Of the ego, or of whom it touched.
+    let on_side = |side: LeftRight| {
+        let left_m = [met, of_ego].map(|from| road.cross(other.states[0].position() - from));
+        let sign = if side == LeftRight::Left { 1.0 } else { -1.0 };
+        left_m.iter().any(|left_m| sign * left_m > ASIDE * LANE_M)
+    };
+    let turned = math::wrap_angle(other.states[0].heading - ego.states[0].heading).abs();
+    match told.thrower {
+        None => true,
+        Some(Thrower::Beside(side)) => on_side(side),
+        Some(Thrower::Cross(side)) => on_side(side) && (CROSSES_RAD.0..CROSSES_RAD.1).contains(&turned),
+    }
+}

@@ -1,0 +1,110 @@
+//! The road for what is told: a street, a lot, a highway or a junction.
+
+use crate::ground::junction::junction;
+use crate::ground::lanes::{has, is_one_way, lanes_for, told_lane, usual_lane};
+use crate::ground::pieces::{APPROACH_M, behind_median, straight, strips};
+use crate::ground::way::{Across, Ground, with_way};
+use crate::told::crash::Told;
+use crate::told::lies::Lies;
+use crate::told::others::Role;
+use crate::told::side::{Turning, size_of};
+use crate::usual::LANE_M;
+use recrash_model::account::{LaneWord, LeftRight, Origin, PlaceKind};
+use recrash_model::kinds::PartnerKind;
+use recrash_model::scenario::{GraphMap, RoadStart, Strip, StripKind};
+use recrash_model::template::Movement;
+
+/// The road for an account.
+pub(crate) fn ground_for(told: &Told) -> Ground {
+    let crossing = matches!(told.origin, Origin::Cross { .. }) && !told.crosses_street()
+        || told.sv.turning != Turning::No && told.sv.turning != Turning::Round
+        || told.cp.turning != Turning::No;
+    // Aisles cross where somebody turns.
+    let lot = matches!(told.place, PlaceKind::ParkingLot | PlaceKind::Garage | PlaceKind::Driveway | PlaceKind::Alley)
+        && !matches!(told.sv.turning, Turning::Left | Turning::Right);
+    let controlled = told.is_controlled() && told.place != PlaceKind::Highway;
+    // Who gives way to crossing traffic, or keeps a junction clear, is at one.
+    let at_one = [Role::Crosser, Role::Blocker, Role::Beyond].into_iter().any(|role| has(told, role));
+    let gives_way = told.place != PlaceKind::Highway && (at_one || told.crossed_near);
+    let entered = told.place != PlaceKind::Highway && (told.enters() || told.is_followed_in());
+    if (crossing || controlled || gives_way || entered) && !lot || told.place == PlaceKind::Intersection {
+        let ground = junction(told, crossing);
+        let behind_m: &[f64] = match (told.edge, told.lies) {
+            (Some(_), _) => &BEHIND_ENTRY_M,
+            (None, Some(Lies::Edge)) => &[0.0],
+            // At the end of the space that it turned into, or across the entrance.
+            _ if told.stands_across() || told.at_entrance => &BEHIND_ENTRY_M,
+            _ => &[],
+        };
+        let turns = matches!(told.sv.turning, Turning::Left | Turning::Right);
+        return if turns && !behind_m.is_empty() { ground.at_entry(size_of(&told.sv).0, behind_m) } else { ground };
+    }
+    let one_way = is_one_way(told);
+    let one_sided = one_way || told.keeps_one_way() || told.edge == Some(LeftRight::Left) && !told.edge_is_median();
+    let oncoming = if one_sided || told.place == PlaceKind::Highway { 0 } else { 1 };
+    let (right, left) = match told.place {
+        _ if let Some(side) = told.edge => beside_edge(told, side, lot, oncoming),
+        PlaceKind::Highway => (strips(lanes_for(told, 3), &told.beside_lanes(&[StripKind::Shoulder])), Vec::new()),
+        _ if lot => (strips(lanes_for(told, 1), &[StripKind::Stalls]), strips(oncoming, &[StripKind::Stalls])),
+        _ => {
+            let stalls = matches!(told.origin, Origin::Stall { .. });
+            let usual = [if stalls { StripKind::Stalls } else { StripKind::Parking }, StripKind::Sidewalk];
+            let beside = told.beside_lanes(&usual);
+            (strips(lanes_for(told, 2), &beside), strips(oncoming, &beside))
+        }
+    };
+    let lanes = right.iter().filter(|strip| strip.kind == StripKind::Driving).count();
+    let beside = right.iter().map(|strip| strip.kind).filter(|kind| *kind != StripKind::Driving).collect();
+    let usual = usual_lane(told, lanes, one_way);
+    let lane = told_lane(told, lanes).unwrap_or(usual);
+    let start = RoadStart::At { x_m: -APPROACH_M, y_m: (lane as f64 + 0.5) * LANE_M, heading_deg: 0.0 };
+    let map = GraphMap {
+        roads: vec![straight("main", start, 2.0 * APPROACH_M, right, left)],
+        junctions: Vec::new(),
+        areas: Vec::new(),
+    };
+    let across = Across { lanes, lane, oncoming, beside };
+    let ground = with_way(map, vec!["main+".to_owned()], across, vec![APPROACH_M], false);
+    let at_kerb = told.is_at_kerb() && !lot && told.place != PlaceKind::Highway && !one_way;
+    let stands_m = if at_kerb { ground.kerbs_m[1] } else { 0.0 };
+    Ground { stands_m, ..ground }
+}
+
+/// From where the road begins that the ego turns into to the ego's front, where it meets what stands at the edge of that road, or across
+/// it. [m]
+const BEHIND_ENTRY_M: [f64; 3] = [3.0, 5.0, 8.0];
+
+/// Strips of a road at whose edge something stands.
+fn beside_edge(told: &Told, side: LeftRight, lot: bool, oncoming: usize) -> (Vec<Strip>, Vec<Strip>) {
+    let usual: &[StripKind] = match told.place {
+        PlaceKind::Highway => &[StripKind::Shoulder],
+        PlaceKind::Alley => &[],
+        _ if lot => &[StripKind::Stalls],
+        _ => &[StripKind::Parking, StripKind::Sidewalk],
+    };
+    let edge = told.beside_edge();
+    let lanes = if lot { 1 } else { lanes_for(told, if told.place == PlaceKind::Highway { 3 } else { 2 }) };
+    match side {
+        LeftRight::Right => {
+            let opposite: &[StripKind] = if told.place == PlaceKind::Highway { &[] } else { usual };
+            (strips(lanes, &edge), strips(oncoming, opposite))
+        }
+        LeftRight::Left if told.edge_is_median() => (strips(lanes, usual), behind_median(strips(oncoming, usual))),
+        LeftRight::Left => (strips(lanes, usual), strips(0, &edge)),
+    }
+}
+
+impl Told {
+    /// Whether the street is told to be one-way, and nobody of the story is told to be on its other side.
+    fn keeps_one_way(&self) -> bool {
+        let lanes = [self.sv.lane, self.cp.lane];
+        let opposing = self.origin == Origin::Opposite || lanes.contains(&Some(LaneWord::Opposing));
+        let over = [self.sv.movement, self.cp.movement].contains(&Some(Movement::CrossingIntoOpposingLane));
+        self.layout.one_way && !opposing && !over && !has(self, Role::Oncoming)
+    }
+
+    /// Whether the partner crosses a street on foot, or as an animal, where no road crosses it.
+    fn crosses_street(&self) -> bool {
+        matches!(self.cp.kind, PartnerKind::Pedestrian | PartnerKind::Animal) && self.place == PlaceKind::Street
+    }
+}

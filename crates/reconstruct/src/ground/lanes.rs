@@ -1,0 +1,130 @@
+//! How many lanes the ego's road has, and which is the ego's.
+
+use crate::told::crash::Told;
+use crate::told::layout::strip_of;
+use crate::told::others::Role;
+use crate::told::side::Turning;
+use crate::told::zones::side_of;
+use crate::usual::LANE_M;
+use recrash_model::account::{ContactState, LaneWord, LeftRight, Origin};
+use recrash_model::template::Movement;
+use recrash_model::zones::ContactZone;
+
+/// Who is parked on the left, facing as the ego does, is so on a one-way street.
+pub(super) fn is_one_way(told: &Told) -> bool {
+    matches!(told.origin, Origin::Parked { side: Some(LeftRight::Left) })
+}
+
+/// Lanes in the ego's direction: as told, and at least as many as the told lanes need.
+pub(super) fn lanes_for(told: &Told, usual: usize) -> usize {
+    // Who comes by on the opposite side, or comes over from there, does so beside the only lane.
+    let beside_opposite = told.cp.lane == Some(LaneWord::Opposing) || told.comes_over || told.is_passed_by_oncoming();
+    let usual = if beside_opposite && told.sv.lane.is_none() { 1 } else { usual };
+    // A street with driveways, or stalls, on both sides.
+    let from_left = matches!(
+        told.origin,
+        Origin::Stall { side: Some(LeftRight::Left) } | Origin::Driveway { side: Some(LeftRight::Left) }
+    );
+    let usual = if from_left && told.backs_out() || told.layout.narrow { 1 } else { usual };
+    // The lane by whose edge something stands is the only one of the road that the ego turns into.
+    let turns = matches!(told.sv.turning, Turning::Left | Turning::Right);
+    if told.edge.is_some() && turns && told.sv.lane.is_none() {
+        return 1;
+    }
+    let needed = [(told.sv.lane, true), (told.cp.lane, false)].into_iter().map(|(word, of_ego)| match word {
+        // A lane that is counted from one side is not the last on the other, but where as many are told.
+        Some(LaneWord::Center) => match told.counted(of_ego) {
+            Some(counted) => counted.number + usize::from(told.lanes.map(usize::from) != Some(counted.number)),
+            None => 3,
+        },
+        Some(LaneWord::Left | LaneWord::Right | LaneWord::LeftTurn | LaneWord::RightTurn) => 2,
+        _ => 1,
+    });
+    let more = usize::from(told.more_lanes) + usize::from(told.layout.turn_lane);
+    let lanes = told.lanes.map_or(usual, usize::from).max(needed.max().unwrap_or(1)) + more;
+    lanes.clamp(1, MOST_LANES)
+}
+
+/// No road has more lanes in one direction.
+const MOST_LANES: usize = 5;
+
+/// The ego's lane, where none is told: the rightmost, but for a partner that comes by on the right, or where the ego leaves it to the right.
+pub(super) fn usual_lane(told: &Told, lanes: usize, one_way: bool) -> usize {
+    let to_right = told.sv_aside().is_some_and(|aside| aside.to_t_m >= LANE_M);
+    match lanes {
+        _ if one_way => 0,
+        _ if told.edge == Some(LeftRight::Left) || told.layout.left_to_come || told.is_met_over_line() => 0,
+        2.. if told.edge.is_none() && (to_right || passes_right(told)) => lanes - 2,
+        _ => lanes - 1,
+    }
+}
+
+/// The ego's lane, where it is told, 0 is the leftmost.
+pub(super) fn told_lane(told: &Told, lanes: usize) -> Option<usize> {
+    // Of two lanes that turn the ego's is the other one.
+    if told.turns_abreast() {
+        match (told.sv.lane, told.origin) {
+            (Some(LaneWord::LeftTurn), Origin::Beside { side: LeftRight::Left }) if lanes > 1 => return Some(1),
+            (Some(LaneWord::RightTurn), Origin::Beside { side: LeftRight::Right }) => return lanes.checked_sub(2),
+            _ => {}
+        }
+    }
+    if told.sv.lane.is_some() {
+        let number = told.lane_number(true, lanes);
+        // Who goes out of the told lane and comes back to it has its line beside it.
+        let back = told.sv_aside().filter(|aside| aside.back);
+        return match back.map(|aside| aside.to_t_m > aside.from_t_m) {
+            Some(true) => number?.checked_sub(1),
+            Some(false) => number.map(|lane| lane + 1).filter(|lane| *lane < lanes),
+            None => number,
+        };
+    }
+    // The partner's lane tells the ego's, where the two go one way; of who changes into it that beside it.
+    let other = told.lane_number(false, lanes)?;
+    let left_m = told.sv_aside().map_or(0.0, |aside| aside.from_t_m - aside.to_t_m);
+    match told.origin {
+        Origin::Behind | Origin::Ahead if left_m >= LANE_M => (other + 1 < lanes).then_some(other + 1),
+        Origin::Behind | Origin::Ahead if left_m <= -LANE_M => other.checked_sub(1),
+        Origin::Behind | Origin::Ahead => Some(other),
+        Origin::Beside { side: LeftRight::Left } => (other + 1 < lanes).then_some(other + 1),
+        Origin::Beside { side: LeftRight::Right } => other.checked_sub(1),
+        _ => None,
+    }
+}
+
+/// Whether somebody with this part is drawn.
+pub(super) fn has(told: &Told, role: Role) -> bool {
+    told.extras.iter().any(|extra| extra.role == role)
+}
+
+fn passes_right(told: &Told) -> bool {
+    let in_lane = told.cp.lane.and_then(strip_of).is_none();
+    // Who stands beside the lanes does so beside the outermost.
+    let in_lane = in_lane && !told.stands_beside(false) && told.thing.is_none();
+    let touched = |zone: &ContactZone| matches!(zone, ContactZone::Right | ContactZone::FrontRight);
+    let moves = told.cp.state == ContactState::Moving;
+    let passes = told.cp.movement == Some(Movement::Passing) && side_of(&told.sv.zones) == Some(-1.0)
+        || told.cp.passes_on() == Some(LeftRight::Right);
+    let by = moves && told.sv.zones.iter().any(touched) || passes;
+    in_lane && matches!(told.origin, Origin::Beside { side: LeftRight::Right })
+        || in_lane && told.origin == Origin::Behind && by
+}
+
+impl Told {
+    /// Whether the partner comes over the line between the directions to the ego's left, which is then in the lane beside that: from the
+    /// opposite direction, out of a turn against the ego's way, or by the opposite side past it.
+    fn is_met_over_line(&self) -> bool {
+        let left = side_of(&self.sv.zones) == Some(1.0);
+        let against = matches!(
+            (self.origin, self.cp.turning),
+            (Origin::Opposite, Turning::No | Turning::Left)
+                | (Origin::Cross { side: LeftRight::Left }, Turning::Right)
+                | (Origin::Cross { side: LeftRight::Right }, Turning::Left)
+        );
+        let passes = self.cp.movement == Some(Movement::Passing) && self.layout.centre_line;
+        let over = self.cp.movement == Some(Movement::CrossingIntoOpposingLane) || passes;
+        let comes_by = over && matches!(self.origin, Origin::Behind | Origin::Beside { side: LeftRight::Left });
+        let no_lane = self.sv.lane.is_none() && self.cp.lane.is_none();
+        no_lane && left && self.sv.turning == Turning::No && self.edge.is_none() && (against || comes_by)
+    }
+}

@@ -1,0 +1,7 @@
+//! The road around a crash: drawn from what is told of the place, with the ego's lane along the x axis.
+
+pub(crate) mod drawn;
+mod junction;
+mod lanes;
+pub(crate) mod pieces;
+pub(crate) mod way;

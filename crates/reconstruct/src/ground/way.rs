@@ -1,0 +1,188 @@
+//! A road and the ego's way on it: where places lie along it and beside it.
+
+use crate::ground::pieces::{APPROACH_M, corner_m};
+use crate::told::aside::Aside;
+use crate::usual::LANE_M;
+use recrash_model::account::LaneWord;
+use recrash_model::geometry::{Pose, Vec2};
+use recrash_model::scenario::{GraphMap, MapSpec, StripKind};
+use recrash_roads::{LanePath, RoadNetwork};
+use std::rc::Rc;
+use std::sync::Arc;
+
+/// Whose turn is over has turned by so much; places to try are so far behind that. [rad, m]
+const TURNED_RAD: f64 = 1.3;
+const AFTER_TURN_M: [f64; 4] = [0.0, 3.0, 6.0, 10.0];
+
+/// A road and the ego's way on it. Hundreds of ways of touching are tried on one: they share what is large.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Ground {
+    pub(crate) map: Rc<GraphMap>,
+    /// Its network: a scenario on it need not build it again.
+    pub(crate) network: Arc<RoadNetwork>,
+    /// Roads of the ego's way.
+    pub(crate) route: Vec<String>,
+    pub(crate) lane: u8,
+    /// The ego's way; and how far to the right of it the ego drives, whose lane does not lead where it turns. [m]
+    pub(super) way: Rc<LanePath>,
+    pub(crate) off_route_m: f64,
+    /// Places along it to try. [m]
+    pub(super) places: Vec<f64>,
+    /// Whether crossing roads are there.
+    pub(crate) junction: bool,
+    /// In one direction, and in the other.
+    pub(crate) lanes: usize,
+    pub(crate) oncoming: usize,
+    /// From the ego's line to the middle of who is parked at the kerb on the left, and on the right. [m]
+    pub(crate) kerbs_m: [f64; 2],
+    /// From the ego's line to where it stands, to the right: it is parked at the kerb. [m]
+    pub(crate) stands_m: f64,
+    /// What lies beside the lanes of the partner's road, from them outwards.
+    pub(crate) beside: Vec<StripKind>,
+    /// From the ego's line to the outer edge of the lanes on the left, and on the right. [m]
+    pub(crate) lane_edges_m: [f64; 2],
+    /// From the ego's line to the middle of the nearest lane of those who come towards it. [m]
+    pub(crate) opposing_m: f64,
+    /// The drift that brings the ego to what stands at the edge of its road.
+    pub(crate) drift: Option<Aside>,
+}
+
+impl Ground {
+    pub(crate) fn places(&self) -> Vec<f64> {
+        self.places.clone()
+    }
+
+    /// Length of the first road of the way. [m]
+    pub(crate) fn first_m(&self) -> f64 {
+        if self.junction { APPROACH_M } else { 2.0 * APPROACH_M }
+    }
+
+    /// How far along the ego's way a place is, and how far beside it. [m]
+    pub(crate) fn beside(&self, place: Vec2) -> (f64, f64) {
+        let found = self.way.project(place, 0);
+        (found.s, found.t - self.off_route_m)
+    }
+
+    /// A pose along the ego's way, or beside it.
+    pub(crate) fn pose(&self, s_m: f64, t_m: f64) -> Pose {
+        self.way.pose(s_m, t_m + self.off_route_m)
+    }
+
+    /// Along the road where the ego's line is 0, of a street. [m]
+    pub(crate) const fn begins_m(&self) -> f64 {
+        APPROACH_M
+    }
+
+    /// The same, with the ego's front so far behind where the road begins that it turns into.
+    pub(super) fn at_entry(self, ego_m: f64, behind_m: &[f64]) -> Self {
+        let centre_y_m = self.centre_y_m();
+        let entry_m = (0..1000)
+            .map(|step| APPROACH_M + 0.05 * f64::from(step))
+            .find(|s_m| (self.sv_pose(*s_m).position.y - centre_y_m).abs() >= corner_m(self.lanes))
+            .unwrap_or(APPROACH_M);
+        Self { places: behind_m.iter().map(|behind_m| entry_m - 0.5 * ego_m + behind_m).collect(), ..self }
+    }
+
+    /// The same, with the places first at which the ego's turn is over.
+    pub(super) fn after_turn(mut self) -> Self {
+        let turned = |s_m: &f64| self.sv_pose(*s_m).heading.abs() > TURNED_RAD;
+        let over_m = (0..120).map(|step| APPROACH_M + 0.5 * f64::from(step)).find(turned);
+        let places = over_m.iter().flat_map(|over_m| AFTER_TURN_M.map(|behind_m| over_m + behind_m));
+        self.places = places.chain(self.places.iter().copied()).collect();
+        self
+    }
+
+    /// The same, with an ego that drifts.
+    pub(crate) fn drifting(&self, drift: Aside) -> Self {
+        Self { drift: Some(drift), ..self.clone() }
+    }
+
+    /// The same, with an ego whose line is so far to the right of its lane's. [m]
+    pub(crate) fn standing(&self, stands_m: f64) -> Self {
+        Self { stands_m, ..self.clone() }
+    }
+
+    /// Where the middle of a junction is. [m]
+    pub(crate) fn centre_y_m(&self) -> f64 {
+        (self.lanes as f64 - 0.5) * LANE_M
+    }
+
+    /// Where the middle of the nearest lane of those is who come towards the ego. [m]
+    pub(crate) fn opposing_y_m(&self) -> f64 {
+        self.sv_pose(0.0).position.y + self.opposing_m
+    }
+
+    /// Where the middle of a told lane of those is who come towards the ego, else that of the nearest. [m]
+    pub(crate) fn oncoming_y_m(&self, lane: Option<LaneWord>) -> f64 {
+        let number = match lane {
+            Some(LaneWord::Center) => self.oncoming / 2,
+            Some(LaneWord::Right | LaneWord::RightTurn) => self.oncoming.saturating_sub(1),
+            _ => 0,
+        };
+        self.opposing_y_m() + number as f64 * LANE_M
+    }
+
+    pub(crate) fn sv_pose(&self, s_m: f64) -> Pose {
+        self.pose(s_m, 0.0)
+    }
+}
+
+/// Lanes in the ego's direction, the ego's, 0 is the leftmost, those of who comes towards it, and what lies beside them.
+pub(super) struct Across {
+    pub(super) lanes: usize,
+    pub(super) lane: usize,
+    pub(super) oncoming: usize,
+    pub(super) beside: Vec<StripKind>,
+}
+
+impl Across {
+    /// From the ego's line to the middle of who is parked at the kerb on the left, and on the right. [m]
+    fn kerbs_m(&self) -> [f64; 2] {
+        let moving = self.beside.iter().take_while(|kind| **kind == StripKind::Bike);
+        let half_m = 0.5 * StripKind::Parking.usual_width_m() + moving.map(|kind| kind.usual_width_m()).sum::<f64>();
+        self.lane_edges_m().map(|edge_m| edge_m + half_m)
+    }
+
+    /// From the ego's line to the outer edge of the lanes on the left, and on the right. [m]
+    fn lane_edges_m(&self) -> [f64; 2] {
+        [self.oncoming + self.lane, self.lanes - self.lane - 1].map(|between| (between as f64 + 0.5) * LANE_M)
+    }
+}
+
+pub(super) fn with_way(map: GraphMap, route: Vec<String>, across: Across, places: Vec<f64>, junction: bool) -> Ground {
+    let network = RoadNetwork::build(&MapSpec::G(map.clone()));
+    let lane = across.lane as u8;
+    let way = network.way(&route, lane, None).expect("the ego's way is on the map that was drawn for it");
+    let (kerbs_m, opposing_m) = (across.kerbs_m(), (across.lane + 1) as f64 * LANE_M);
+    // Of a road before a junction the rightmost lane lies on the x axis.
+    let own_y_m = if junction { (across.lanes - across.lane - 1) as f64 * LANE_M } else { 0.0 };
+    let off_m = way.pose(APPROACH_M - 1.0, 0.0).position.y - own_y_m;
+    let off_route_m = if off_m.abs() > 0.5 * LANE_M { off_m } else { 0.0 };
+    Ground {
+        map: Rc::new(map),
+        network: Arc::new(network),
+        route,
+        lane,
+        way: Rc::new(way),
+        off_route_m,
+        places,
+        junction,
+        lanes: across.lanes,
+        oncoming: across.oncoming,
+        kerbs_m,
+        lane_edges_m: across.lane_edges_m(),
+        beside: across.beside,
+        stands_m: 0.0,
+        opposing_m,
+        drift: None,
+    }
+}
+
+impl Ground {
+    /// Whether somebody of this width who stands here reaches into the lanes, by more than this.
+    pub(crate) fn is_in_lanes(&self, at: Pose, width_m: f64, by_m: f64) -> bool {
+        let (_, t_m) = self.beside(at.position);
+        let edge_m = self.lane_edges_m[usize::from(t_m > 0.0)];
+        t_m.abs() - 0.5 * width_m < edge_m - by_m
+    }
+}

@@ -1,0 +1,201 @@
+//! Ways of others near who drive or stand in the lanes: ahead of the ego, behind it, beside it, or towards it.
+
+use crate::facts::near::NEAR_M;
+use crate::ground::pieces::corner_m;
+use crate::nearby::scene::{LOT_MPS, Scene};
+use crate::nearby::way::{PASSES_BY_MPS, Way};
+use crate::usual::{LANE_M, STANDS_MPS};
+use recrash_model::account::{LeftRight, Origin};
+use recrash_model::geometry::{Pose, Vec2};
+
+/// Who comes along and stands at the contact drives as far as in this share of the time at its speed. [-]
+const COMES_SHARE: f64 = 0.7;
+
+/// What fell off somebody begins so far behind it. [m]
+const RIGHT_BEHIND_M: f64 = 0.7;
+
+/// Who makes room for somebody between it and the ego is so far over in its lane. [m]
+const FAR_OVER_M: f64 = 0.9;
+
+/// Who comes over ahead of an ego that stands does so slowly. [m/s]
+const MERGES_MPS: f64 = 3.0;
+
+impl<'a> Scene<'a> {
+    /// In the lane towards the ego: it comes by, is yet to come, or drives off where the ego's road begins behind a junction.
+    pub(super) fn oncoming(&self, half_m: f64) -> Vec<Way> {
+        if !self.is_two_way() {
+            return Vec::new();
+        }
+        let (s_m, _) = self.at(self.until);
+        let [_, usual_mps] = self.speeds();
+        let at = |on_m: f64| Way::straight(self.against(s_m + on_m), usual_mps, self.contact_s);
+        let from_m = self.ground.first_m() - half_m - 2.0;
+        let off = (self.ground.junction && from_m > s_m - NEAR_M)
+            .then(|| Way::straight(self.against(from_m), usual_mps, 0.0));
+        [12.0, 24.0, -10.0, -25.0].into_iter().map(at).chain(off).collect()
+    }
+
+    /// In the lane towards the ego, where no junction is; else at the other side of it.
+    pub(super) fn waits_opposite(&self, half_m: f64) -> Vec<Way> {
+        if !self.is_two_way() {
+            return Vec::new();
+        }
+        let (s_m, _) = self.at(self.until);
+        let line_m = self.ground.first_m();
+        let across_m = line_m + 2.0 * corner_m(self.ground.lanes) + half_m + 1.0;
+        let place = |lane: usize, on_m: f64| {
+            let at_m = s_m + on_m;
+            let inside = self.ground.junction && at_m + half_m > line_m;
+            Way::stands(self.against_in(lane, if inside { at_m.max(across_m) } else { at_m }))
+        };
+        let lanes = 0..self.ground.oncoming.max(1);
+        lanes.flat_map(|lane| [10.0, 20.0, 30.0, 4.0].map(|on_m| place(lane, on_m))).collect()
+    }
+
+    /// Comes along to where somebody stands.
+    pub(super) fn coming_to(&self, way: &Way) -> Way {
+        let [_, speed_mps] = self.speeds();
+        let way_m = COMES_SHARE * speed_mps * self.contact_s;
+        let from = way.from.position - Vec2::from_heading(way.from.heading) * way_m;
+        Way { speed_mps, stops_m: Some(way_m), ..Way::stands(Pose { position: from, ..way.from }) }
+    }
+
+    /// Ahead in the ego's lane, or beside that, and drives on.
+    pub(super) fn leads(&self, half_m: f64) -> Vec<Way> {
+        let (s_m, _) = self.at(0);
+        let mut list = Vec::new();
+        for t_m in self.lines() {
+            for speed_mps in self.speeds() {
+                let from =
+                    |on_m: f64| Way::straight(self.road(s_m + self.front_m() + half_m + on_m, t_m), speed_mps, 0.0);
+                list.extend([8.0, 14.0, 22.0, 30.0].map(from));
+            }
+        }
+        list
+    }
+
+    /// Drives on ahead of what fell off it.
+    pub(super) fn loses(&self, half_m: f64) -> Option<Way> {
+        let thing = self.partner.filter(|_| self.told.dropped.is_some())?;
+        let (pose, on_m) = (thing.states[0].pose(), 0.5 * thing.length_m + half_m + RIGHT_BEHIND_M);
+        let from = Pose { position: pose.position + Vec2::from_heading(pose.heading) * on_m, ..pose };
+        let (s_m, _) = self.ground.beside(from.position);
+        Some(Way::straight(self.road(s_m, self.at(0).1), thing.states[0].speed(), 0.0))
+    }
+
+    pub(super) fn stands_ahead(&self, half_m: f64, least_m: f64) -> Vec<Way> {
+        let (s_m, _) = self.at(self.until);
+        let front_m = s_m + self.front_m() + half_m;
+        let far = [3.0, 5.0, 7.5, 10.0, 16.0, 24.0, 30.0].into_iter().filter(|on_m| *on_m >= least_m);
+        let places = far.flat_map(|on_m| self.lines().into_iter().map(move |t_m| (front_m + on_m, t_m)));
+        let across_m = self.ground.first_m() + 2.0 * corner_m(self.ground.lanes) + half_m;
+        let inside = |s_m: f64| self.ground.junction && s_m + half_m > self.ground.first_m() && s_m < across_m;
+        let beyond = self.ground.junction.then(|| Way::stands(self.road(across_m + 1.0, 0.0)));
+        let stands = |(s_m, t_m): (f64, f64)| Way::stands(self.road(s_m, t_m));
+        places.filter(|(s_m, _)| !inside(*s_m)).map(stands).chain(beyond).collect()
+    }
+
+    /// Behind the ego: it comes along and stands, or stands where the ego does from the start.
+    pub(super) fn follows(&self, half_m: f64) -> Vec<Way> {
+        let rear = (0..=self.until).map(|step| self.at(step).0).fold(f64::MAX, f64::min) - self.front_m() - half_m;
+        let (s_m, _) = self.at(self.until);
+        let mut list = Vec::new();
+        for t_m in self.lines().into_iter().filter(|t_m| *t_m == 0.0 || self.ground.lanes > 1) {
+            for speed_mps in self.speeds().into_iter().rev() {
+                for behind_m in [6.0, 12.0, 18.0, 26.0] {
+                    let rests_m = s_m - self.front_m() - half_m - behind_m;
+                    let way_m = COMES_SHARE * speed_mps * self.contact_s;
+                    let from = self.road(rests_m - way_m, t_m);
+                    list.push(Way { speed_mps, stops_m: Some(way_m), ..Way::stands(from) });
+                }
+            }
+            list.extend([6.0, 12.0, 20.0].map(|behind_m| Way::stands(self.road(rear - behind_m, t_m))));
+        }
+        list
+    }
+
+    pub(super) fn beside(&self, side: LeftRight) -> Vec<Way> {
+        let (s_m, _) = self.at(self.until);
+        let t_m = [self.beside_m(side, self.until), self.beside_m(side, 0)];
+        let mut list = Vec::new();
+        for speed_mps in self.speeds() {
+            for (on_m, before_s) in [(4.0, 0.0), (10.0, 0.0), (-8.0, 0.0), (14.0, 0.0), (6.0, 2.0), (0.0, 4.0)] {
+                let at = |t_m: f64| Way::straight(self.road(s_m + on_m, t_m), speed_mps, self.contact_s - before_s);
+                list.extend(t_m.map(at));
+            }
+            // It comes along, and stands there.
+            let way_m = COMES_SHARE * speed_mps * self.contact_s;
+            let rests = |on_m: f64| Way {
+                speed_mps,
+                stops_m: Some(way_m),
+                ..Way::stands(self.road(s_m + on_m - way_m, t_m[0]))
+            };
+            list.extend([0.0, -6.0, 6.0, -12.0].map(rests));
+        }
+        // Far over in its lane, where somebody comes between.
+        let sign = if side == LeftRight::Left { -1.0 } else { 1.0 };
+        let over = |way: &Way| {
+            let away = Vec2::from_heading(way.from.heading).left() * (-sign * FAR_OVER_M);
+            Way { from: Pose { position: way.from.position + away, ..way.from }, by: Vec::new(), ..*way }
+        };
+        let far: Vec<Way> = list.iter().map(over).collect();
+        list.extend(far);
+        list
+    }
+
+    /// Comes from behind, and is beside the ego or ahead of it at the contact.
+    pub(super) fn passers(&self, place: Option<Origin>, half_m: f64) -> Vec<Way> {
+        let (s_m, t_m) = self.at(self.until);
+        let sides = match place {
+            Some(Origin::Beside { side }) => vec![side],
+            _ => vec![LeftRight::Left, LeftRight::Right],
+        };
+        let mut list = Vec::new();
+        for side in sides {
+            let sign = if side == LeftRight::Left { -1.0 } else { 1.0 };
+            for on_m in [8.0, 14.0, 4.0, 22.0] {
+                let speed_mps = self.speeds()[0].max(LOT_MPS) + PASSES_BY_MPS;
+                // Beside one that is parked it comes along the lane.
+                let line_m =
+                    if t_m.abs() > 0.5 * LANE_M && t_m * sign < 0.0 { 0.0 } else { self.beside_m(side, self.until) };
+                list.push(Way::straight(self.road(s_m + on_m + half_m, line_m), speed_mps, self.contact_s));
+            }
+        }
+        list
+    }
+
+    /// Changes from beside the ego's lane into that, ahead of it.
+    pub(super) fn mergers(&self, from: LeftRight, half_m: f64) -> Vec<Way> {
+        let (s_m, t_m) = self.at(self.until);
+        let to_m = self.told.sv_aside().map_or(t_m, |aside| aside.from_t_m);
+        let shifts_m = if from == LeftRight::Left { LANE_M } else { -LANE_M };
+        let [mean_mps, _] = self.speeds();
+        let place = |on_m: f64| self.road(s_m + self.front_m() + half_m + on_m, to_m - shifts_m);
+        let way = |speed_mps: f64, on_m: f64| Way { shifts_m, ..Way::straight(place(on_m), speed_mps, self.contact_s) };
+        match self.ego.states[self.until].velocity().length() < STANDS_MPS {
+            true => [14.0, 18.0, 22.0].map(|on_m| way(MERGES_MPS, on_m)).into(),
+            false => [6.0, 10.0, 14.0, 20.0].map(|on_m| way(mean_mps, on_m)).into(),
+        }
+    }
+
+    /// Changes from one lane to the next, ahead of the ego or beside it.
+    pub(super) fn changers(&self, place: Option<Origin>, side: Option<LeftRight>, half_m: f64) -> Vec<Way> {
+        let (s_m, _) = self.at(self.until);
+        let behind = place == Some(Origin::Behind);
+        let far: &[f64] = if behind { &[-18.0, -24.0, -32.0] } else { &[8.0, 14.0, 3.0, 22.0, 30.0] };
+        let sides = side.map_or(vec![LeftRight::Left, LeftRight::Right], |side| vec![side]);
+        let mut list = Vec::new();
+        for side in sides {
+            let shifts_m = if side == LeftRight::Left { -LANE_M } else { LANE_M };
+            for to_m in [-LANE_M, LANE_M, 0.0] {
+                for speed_mps in self.speeds() {
+                    for on_m in far {
+                        let at = self.road(s_m + self.front_m() + half_m + on_m, to_m - shifts_m);
+                        list.push(Way { shifts_m, ..Way::straight(at, speed_mps, self.contact_s) });
+                    }
+                }
+            }
+        }
+        list
+    }
+}

@@ -1,0 +1,204 @@
+//! Ways to try for somebody near, by what is told of it.
+
+use crate::nearby::scene::{DRIVES_MPS, RIDES_MPS, Scene};
+use crate::nearby::way::{SLOWS_BY_MPS, Way};
+use crate::told::near::{Does, Near};
+use crate::told::others::{Extra, Role};
+use crate::told::sizes::size_of as size_of_kind;
+use crate::usual::WALKS_MPS;
+use recrash_model::account::{Kind, KindGroup, LeftRight, Origin};
+use recrash_model::geometry::Pose;
+use recrash_model::kinds::PartnerKind;
+use recrash_model::scenario::{Actor, StripKind};
+use recrash_model::vehicle::VehicleSpec;
+
+impl<'a> Scene<'a> {
+    pub(super) fn actors(&self, extra: &Extra) -> Vec<Actor> {
+        let kind = extra.kind.partner_kind().unwrap_or(PartnerKind::PassengerCar);
+        let size = size_of_kind(extra.kind);
+        let spec = VehicleSpec::of(kind);
+        let length_m = size.map_or(spec.length_m, |size| size.length_m);
+        let ways = match (extra.near, extra.kind.group()) {
+            (Some(near), KindGroup::OnFoot | KindGroup::Animal | KindGroup::Cyclist | KindGroup::Object) => {
+                self.walks(extra.kind, near)
+            }
+            (Some(near), _) => self.drives(near, length_m),
+            (None, _) => self.elsewhere(extra, 0.5 * length_m),
+        };
+        let actor = |way: Way| Actor {
+            id: extra.id(),
+            kind,
+            size,
+            mass_kg: None,
+            parts: Vec::new(),
+            plan: way.plan(self.contact_s),
+        };
+        ways.into_iter().map(actor).collect()
+    }
+
+    fn drives(&self, near: Near, length_m: f64) -> Vec<Way> {
+        let half_m = 0.5 * length_m;
+        let (left, right) = (LeftRight::Left, LeftRight::Right);
+        let stands = near.does == Does::Stands;
+        let untold = near.does == Does::Untold;
+        let mut list = Vec::new();
+        match near.place {
+            _ if near.does == Does::TurnsLeft => list.extend(self.turners()),
+            _ if near.does == Does::Backs => list.extend(self.backers(near.place, half_m)),
+            _ if let Does::Changes(side) = near.does => list.extend(self.changers(near.place, side, half_m)),
+            _ if let Does::Turns(side) = near.does => list.extend(self.turning(near.place, side)),
+            _ if let Does::GoesAside(side) = near.does => list.extend(self.aside(near, side, half_m)),
+            _ if let Does::PullsOver(side) = near.does => {
+                list.extend(self.aside(near, side.or(Some(LeftRight::Right)), half_m));
+            }
+            _ if near.does == Does::PullsOut => list.extend(self.pulling_out(near.place, half_m)),
+            _ if near.does == Does::Passes => list.extend(self.passers(near.place, half_m)),
+            Some(Origin::Opposite) => {
+                if !stands {
+                    list.extend(self.oncoming(half_m));
+                }
+                if near.does == Does::Slows {
+                    list.extend(self.waits_opposite(half_m).iter().map(|way| self.coming_to(way)));
+                }
+                list.extend(self.comes_or_stands(near, self.waits_opposite(half_m)));
+            }
+            Some(Origin::Ahead) => {
+                list.extend(self.loses(half_m));
+                if !stands {
+                    list.extend(self.leads(half_m));
+                }
+                list.extend(self.comes_or_stands(near, self.stands_ahead(half_m, 0.0)));
+            }
+            Some(Origin::Behind) => list.extend(self.follows(half_m)),
+            Some(Origin::Beside { side }) => {
+                if !stands {
+                    list.extend(self.beside(side));
+                }
+                list.extend(self.stands_beside(side, half_m));
+                list.extend(self.kerb(side, half_m));
+            }
+            Some(Origin::Cross { side }) => list.extend(self.crosses(side, near.does, half_m)),
+            _ if near.across => {
+                list.extend(self.crosses(left, near.does, half_m));
+                list.extend(self.crosses(right, near.does, half_m));
+            }
+            _ => {
+                if !stands {
+                    list.extend(self.oncoming(half_m));
+                    list.extend(self.leads(half_m));
+                    list.extend(self.beside(left));
+                    list.extend(self.beside(right));
+                    list.extend(self.crosses(left, Does::Drives, half_m));
+                    list.extend(self.crosses(right, Does::Drives, half_m));
+                }
+                if stands || untold {
+                    list.extend(self.kerb(left, half_m));
+                    list.extend(self.kerb(right, half_m));
+                    list.extend(self.waits_opposite(half_m));
+                    list.extend(self.stands_beside(left, half_m));
+                    list.extend(self.stands_beside(right, half_m));
+                    list.extend(self.crosses(left, Does::Stands, half_m));
+                    list.extend(self.crosses(right, Does::Stands, half_m));
+                    list.extend(self.stands_ahead(half_m, 12.0));
+                }
+            }
+        }
+        for way in &mut list {
+            let slows = matches!(near.does, Does::Slows | Does::PullsOver(_));
+            way.slows = slows && way.speed_mps > SLOWS_BY_MPS && way.stops_m.is_none();
+        }
+        list
+    }
+
+    /// Who has a part, and does not fit where it is put first, in other places that show the same.
+    fn elsewhere(&self, extra: &Extra, half_m: f64) -> Vec<Way> {
+        let sides = match extra.side {
+            Some(side) => vec![side],
+            None => vec![LeftRight::Right, LeftRight::Left],
+        };
+        match extra.role {
+            Role::Kerb => sides.into_iter().flat_map(|side| self.kerb(side, half_m)).collect(),
+            Role::Beside => sides.into_iter().flat_map(|side| self.stands_beside(side, half_m)).collect(),
+            Role::Abreast => sides.into_iter().flat_map(|side| self.beside(side)).collect(),
+            Role::Crosser => sides.into_iter().flat_map(|side| self.crosses(side, Does::Drives, half_m)).collect(),
+            Role::Oncoming if self.is_two_way() => [0.5, 1.0, 2.0, 3.0, 4.5, 5.2]
+                .into_iter()
+                .flat_map(|before_s| {
+                    let at_s = (self.contact_s - before_s).max(0.5);
+                    let (s_m, _) = self.at(((at_s * 10.0) as usize).min(self.until));
+                    let lanes = 0..self.ground.oncoming.max(1);
+                    lanes.map(move |lane| Way::straight(self.against_in(lane, s_m), DRIVES_MPS, at_s))
+                })
+                .collect(),
+            Role::Lead | Role::Thing if !extra.goes => self.stands_ahead(half_m, 0.0),
+            Role::Lead => self.setting_off(half_m),
+            Role::Slower => self.leads(half_m).into_iter().map(|way| Way { slows: true, ..way }).collect(),
+            Role::Walker | Role::Animal => sides.into_iter().flat_map(|side| self.crossing(extra.kind, side)).collect(),
+            Role::Merger => sides.into_iter().flat_map(|side| self.mergers(side, half_m)).collect(),
+            _ => Vec::new(),
+        }
+    }
+
+    /// Somebody on foot, or an animal, on the sidewalk or beside the lanes; who rides does so at their edge.
+    fn walks(&self, kind: Kind, near: Near) -> Vec<Way> {
+        let (s_m, _) = self.at(self.until);
+        let [right, left] = self.sides();
+        let [left_m, right_m] = self.ground.kerbs_m;
+        let rides = kind.group() == KindGroup::Cyclist;
+        let own_mps = if rides { RIDES_MPS } else { WALKS_MPS };
+        let sides = match near.place {
+            Some(Origin::Beside { side } | Origin::Cross { side }) => vec![side],
+            Some(Origin::Opposite) => vec![LeftRight::Left],
+            _ => vec![LeftRight::Right, LeftRight::Left],
+        };
+        if near.does == Does::Crosses {
+            return sides.into_iter().flat_map(|side| self.coming_across(kind, side)).collect();
+        }
+        let half_m = 0.5 * StripKind::Parking.usual_width_m();
+        let mut list = Vec::new();
+        for side in sides {
+            let (strips, kerb_m, sign) = match side {
+                LeftRight::Left => (left, left_m, -1.0),
+                LeftRight::Right => (right, right_m, 1.0),
+            };
+            let edge_m = kerb_m - half_m;
+            let parking = strips.iter().any(|strip| strip.kind == StripKind::Parking);
+            let walk_m = edge_m + if parking { 2.0 * half_m + 0.9 } else { 0.9 };
+            let turned = if side == LeftRight::Left { std::f64::consts::PI } else { 0.0 };
+            let place = |on_m: f64, t_m: f64| {
+                let pose = self.road(s_m + on_m, sign * t_m);
+                Pose { heading: pose.heading + turned, ..pose }
+            };
+            let beside = matches!(near.place, Some(Origin::Beside { .. }));
+            let lines = if rides || beside { vec![edge_m - 0.2, edge_m + 0.5, walk_m] } else { vec![walk_m] };
+            for t_m in lines {
+                let there: &[f64] = if beside { &[3.0, -2.0, 8.0] } else { &[10.0, 5.0, 18.0, -6.0, 28.0, -12.0] };
+                if !matches!(near.does, Does::Drives | Does::Slows | Does::Passes) {
+                    list.extend(there.iter().map(|on_m| Way::stands(place(*on_m, t_m))));
+                }
+                let speeds = if rides { vec![self.speeds()[0].min(8.0), own_mps] } else { vec![own_mps] };
+                for speed_mps in speeds {
+                    list.extend(there.iter().map(|on_m| Way::straight(place(*on_m, t_m), speed_mps, self.contact_s)));
+                }
+            }
+        }
+        list
+    }
+}
+
+/// Who goes aside in its lane does so by this. [m]
+const ASIDE_M: f64 = 0.7;
+
+impl Scene<'_> {
+    /// Along its lane, and aside in it.
+    fn aside(&self, near: Near, side: Option<LeftRight>, half_m: f64) -> Vec<Way> {
+        let drives = Near { does: Does::Drives, ..near };
+        let sides = side.map_or(vec![LeftRight::Left, LeftRight::Right], |side| vec![side]);
+        let ways = || self.drives(drives, half_m * 2.0).into_iter().filter(|way| way.speed_mps > 0.0);
+        let shifted = |side: LeftRight| {
+            let shifts_m = if side == LeftRight::Left { -ASIDE_M } else { ASIDE_M };
+            ways().filter(|way| way.stops_m.is_none()).map(move |way| Way { shifts_m, ..way })
+        };
+        sides.into_iter().flat_map(shifted).collect()
+    }
+}

@@ -1,0 +1,153 @@
+//! Those beside the ego's way: parked, in the next lane, or gone round.
+
+use crate::others::scene::{BESIDE_M, PARKED_AHEAD_M, ROUND_AHEAD_M, Scene};
+use crate::told::others::Extra;
+use crate::told::side::size_of;
+use crate::usual::{LANE_M, LEAD_GAP_M, ROOM_M};
+use recrash_model::account::{LeftRight, Origin};
+use recrash_model::geometry::Vec2;
+use recrash_model::math;
+use recrash_model::rollout::ActorTrack;
+use recrash_model::scenario::{ActorPlan, Leg, Place, Strip, StripKind};
+
+/// Who passes between two has so much room beside the one that it does not touch. [m]
+const BETWEEN_M: f64 = 0.6;
+
+/// Whom the partner passes before it comes in, it has passed so long before the contact, so far beside. [steps, m]
+const PASSED_BEFORE: usize = 35;
+const PASSED_BESIDE_M: f64 = 3.0;
+
+/// Who drives in the next lane is so far ahead of the ego, and its course goes on so far. [m]
+const ABREAST_M: f64 = 3.0;
+const BEYOND_M: f64 = 160.0;
+
+/// Who hides somebody who comes across stands so far short of it; the sine of the least angle across. [m, -]
+const HIDES_M: f64 = 0.8;
+const ACROSS: f64 = 0.7;
+
+impl Scene<'_> {
+    /// Who is parked at the kerb ahead of the ego, on both sides where nobody tells on which; in a lot in a stall.
+    pub(super) fn parked(&self, extra: &Extra, length_m: f64) -> Vec<ActorPlan> {
+        let road = &self.ground.map.roads[0];
+        // The ego goes against the line of a road that is drawn from the junction.
+        let (right, left) = if self.ground.junction { (&road.left, &road.right) } else { (&road.right, &road.left) };
+        let is = |strips: &[Strip], kind: StripKind| strips.iter().any(|strip| strip.kind == kind);
+        let stalls = is(right, StripKind::Stalls);
+        let has = |strips: &[Strip]| is(strips, StripKind::Parking) || is(strips, StripKind::Stalls);
+        let ahead_m = self.at(self.until).0 + self.front_m() + PARKED_AHEAD_M + 0.5 * length_m;
+        // Nobody is parked in a junction.
+        let before_m = if self.ground.junction { self.ground.first_m() - PARKED_AHEAD_M } else { f64::INFINITY };
+        let wider_m = 0.5 * (StripKind::Stalls.usual_width_m() - StripKind::Parking.usual_width_m());
+        let [left_m, right_m] = self.ground.kerbs_m.map(|kerb_m| kerb_m + if stalls { wider_m } else { 0.0 });
+        let two_way = is(left, StripKind::Driving);
+        let turned_deg = if stalls { 90.0 } else { 0.0 };
+        let sides = [
+            (LeftRight::Right, has(right), right_m, turned_deg),
+            (LeftRight::Left, has(left), -left_m, if two_way && !stalls { 180.0 } else { turned_deg }),
+        ];
+        let told = |side: LeftRight| extra.side.is_none_or(|told| told == side);
+        let plan = |(_, _, t_m, turned_deg): (LeftRight, bool, f64, f64)| {
+            let hides_m = self.hides_m(t_m, length_m).filter(|_| turned_deg != 90.0);
+            let pose = self.ground.pose(hides_m.unwrap_or(ahead_m).min(before_m), t_m);
+            ActorPlan::standing(Place::at(pose.position.x, pose.position.y, pose.heading.to_degrees() + turned_deg))
+        };
+        sides.into_iter().filter(|(side, is, ..)| *is && told(*side)).map(plan).collect()
+    }
+
+    /// Whom the partner goes round: in the line on which it came, where it has left that, or ahead of where it touches the ego.
+    pub(super) fn passed(&self, length_m: f64) -> Option<ActorPlan> {
+        let track = self.partner?;
+        let (came, met) = (track.states[0].pose(), track.states[self.until.min(track.states.len() - 1)].pose());
+        let along = Vec2::from_heading(came.heading);
+        let left = track.states[..=self.until]
+            .iter()
+            .find(|state| along.cross(state.position() - came.position).abs() > BESIDE_M);
+        // Beside the line, on the ego's side, where it passes before it comes in.
+        let before = self.until.saturating_sub(PASSED_BEFORE).min(track.states.len() - 1);
+        let over = self.told.comes_over;
+        let aside_m = if over { 0.0 } else { PASSED_BESIDE_M };
+        let to_ego = along.cross(self.ego.states[self.until].position() - came.position).signum();
+        let on_m = match left {
+            _ if !over => along.dot(track.states[before].position() - came.position),
+            Some(state) => along.dot(state.position() - came.position),
+            None => along.dot(met.position - came.position) + 0.5 * (track.length_m + length_m) + ROUND_AHEAD_M,
+        };
+        let at = came.position + along * on_m + along.left() * (to_ego * aside_m);
+        (on_m > 0.0).then(|| ActorPlan::standing(Place::at(at.x, at.y, came.heading.to_degrees())))
+    }
+
+    /// Where a partner that comes across passes a line beside the ego's way. [m]
+    fn crossing_m(&self, t_m: f64) -> Option<f64> {
+        let track = self.partner?;
+        let at = |step: usize| self.ground.beside(track.states[step].position());
+        let last = self.until.min(track.states.len() - 1);
+        let across = |step: usize| {
+            let (s_m, now_m) = at(step);
+            let turned = math::wrap_angle(track.states[step].heading - self.ground.pose(s_m, 0.0).heading);
+            (at(step - 1).1 - t_m) * (now_m - t_m) <= 0.0 && math::sin(turned).abs() > ACROSS
+        };
+        (1..=last).find(|step| across(*step)).map(|step| at(step).0)
+    }
+
+    /// Who hides a partner that comes across stands short of where that comes out. [m]
+    fn hides_m(&self, t_m: f64, length_m: f64) -> Option<f64> {
+        let (partner_m, wide_m) = size_of(&self.told.cp);
+        let half_m = 0.5 * partner_m.min(wide_m.max(1.0));
+        Some(self.crossing_m(t_m)? - half_m - HIDES_M - 0.5 * length_m)
+    }
+
+    /// Who stands in the next lane where the ego is at the contact; ahead of a partner that is there too, and short of where one
+    /// comes across.
+    pub(super) fn stands_beside(&self, extra: &Extra, length_m: f64) -> ActorPlan {
+        let usual = self.told.comes_from_side().or_else(|| self.partner_from()).unwrap_or(LeftRight::Right);
+        let side = extra.side.unwrap_or(usual);
+        let t_m = if side == LeftRight::Right { LANE_M } else { -LANE_M };
+        let (s_m, _) = self.at(self.until);
+        let there = |track: &ActorTrack| {
+            let state = &track.states[self.until.min(track.states.len() - 1)];
+            let (at_m, beside_m) = self.ground.beside(state.position());
+            let on_side = beside_m * t_m > 0.0 && beside_m.abs() > 0.6 * LANE_M;
+            on_side.then_some((at_m + 0.5 * track.length_m + ROOM_M + 0.5 * length_m).max(s_m))
+        };
+        let stands_m = self.hides_m(t_m, length_m).or_else(|| self.partner.and_then(there)).unwrap_or(s_m);
+        let pose = self.ground.pose(stands_m, t_m);
+        ActorPlan::standing(Place::at(pose.position.x, pose.position.y, pose.heading.to_degrees()))
+    }
+
+    /// Who stands abreast of the ego, and leaves a partner that passes between the two the room that it takes.
+    pub(super) fn passed_between(&self, extra: &Extra, (length_m, width_m): (f64, f64)) -> ActorPlan {
+        let usual = self.told.comes_from_side().or_else(|| self.partner_from()).unwrap_or(LeftRight::Right);
+        let sign = if extra.side.unwrap_or(usual) == LeftRight::Right { 1.0 } else { -1.0 };
+        let (s_m, t_m) = self.at(self.until);
+        let taken_m = |track: &ActorTrack| {
+            let outlines = (0..=self.until.min(track.states.len() - 1)).map(|step| track.outline(step));
+            let abreast = outlines.filter(|outline| {
+                let along_m = (self.ground.beside(outline.centre).0 - s_m).abs();
+                along_m < 0.5 * (track.length_m + length_m) + LEAD_GAP_M
+            });
+            let edges = abreast.flat_map(|outline| outline.corners().map(|corner| self.ground.beside(corner).1));
+            edges.map(|edge_m| sign * (edge_m - t_m)).fold(0.0, f64::max)
+        };
+        let room_m = self.partner.map_or(0.0, taken_m) + BETWEEN_M + 0.5 * width_m;
+        let pose = self.ground.pose(s_m, t_m + sign * room_m.max(LANE_M));
+        // Beside one that comes towards the ego it stands as that drives.
+        let turned_deg = if self.told.origin == Origin::Opposite { 180.0 } else { 0.0 };
+        ActorPlan::standing(Place::at(pose.position.x, pose.position.y, pose.heading.to_degrees() + turned_deg))
+    }
+
+    /// Who drives in the next lane as the ego does, a little ahead.
+    pub(super) fn abreast(&self, extra: &Extra) -> ActorPlan {
+        let (s_m, t_m) = self.at(0);
+        let t_m = t_m + if extra.side == Some(LeftRight::Left) { -LANE_M } else { LANE_M };
+        let place = |s_m: f64| {
+            let pose = self.ground.pose(s_m, t_m);
+            Place::at(pose.position.x, pose.position.y, pose.heading.to_degrees())
+        };
+        ActorPlan {
+            speed_mps: self.recorded.speed_mps,
+            course: vec![Leg::Curve { to: place(self.at(self.until).0 + ABREAST_M + BEYOND_M), reverse: false }],
+            acts: self.recorded.acts.clone(),
+            ..ActorPlan::standing(place(s_m + ABREAST_M))
+        }
+    }
+}

@@ -1,0 +1,149 @@
+//! Lines beside the ego's from which the partner comes: the kerb, a strip, the lane that it leaves.
+
+use crate::ground::way::Ground;
+use crate::pace::plain::{Pace, start_over};
+use crate::told::crash::Told;
+use crate::told::side::{Turning, size_of};
+use crate::touch::lanes;
+use crate::touch::staging::Staging;
+use crate::usual::{LANE_M, WHEELED_M};
+use recrash_model::account::{ContactState, LaneWord, LeftRight, Origin};
+use recrash_model::geometry::Vec2;
+use recrash_model::math;
+use recrash_model::scenario::StripKind;
+use recrash_model::vehicle::VehicleSpec;
+
+/// From how far away somebody pulls out at least. [m]
+pub(super) const PULL_OUT_M: f64 = 8.0;
+
+/// Length of a way out of the line, so that its bends have this radius at least. [m]
+const LEAST_RADIUS_M: f64 = 10.0;
+
+/// The line at the kerb that the partner stood on, to the left of the ego's line. [m]
+fn kerb_y_m(told: &Told, staging: &Staging) -> Option<f64> {
+    if told.pulls_out_opposite() {
+        let strip = staging.ground.beside.contains(&StripKind::Parking) && !staging.ground.junction;
+        return strip.then_some(staging.ground.kerbs_m[0]);
+    }
+    let Origin::Parked { side } = told.origin else { return None };
+    if !told.stood_beside() {
+        return None;
+    }
+    let [left_m, right_m] = staging.ground.kerbs_m;
+    let on_left = side.map_or(staging.cp.heading < 0.0, |side| side == LeftRight::Left);
+    let (kerb_m, cp_m) = if on_left { (left_m, staging.cp.position.y) } else { (right_m, -staging.cp.position.y) };
+    // Before a junction the road has two directions: it came out into the leftmost lane.
+    if on_left && staging.ground.junction && staging.ground.lane > 0 {
+        return Some(staging.sv.position.y + f64::from(staging.ground.lane) * LANE_M);
+    }
+    let aside_m = kerb_m.max(cp_m);
+    Some(if on_left { aside_m } else { -aside_m })
+}
+
+/// The pace of a partner that pulls out from the kerb: from a stand, as far away as its way needs.
+pub(super) fn from_kerb(told: &Told, staging: &Staging) -> Option<Pace> {
+    let aside_m = (kerb_y_m(told, staging)? - staging.cp.position.y).abs();
+    let length_m = (4.0 * LEAST_RADIUS_M * aside_m).sqrt().max(PULL_OUT_M);
+    start_over(told.contact_s, told.cp.speed_mps, length_m)
+}
+
+/// The line that a partner came along before it left it for the contact, to the left of the ego's line; nothing where it is
+/// not told to have left one. [m]
+pub(super) fn line_y_m(told: &Told, staging: &Staging) -> Option<f64> {
+    if told.comes_across() {
+        return None;
+    }
+    // Who backs into a space at the kerb stood beside it, in the lane.
+    if told.cp.backs_in {
+        return Some(0.0);
+    }
+    if told.comes_along_kerb() && staging.ground.stands_m > 0.0 {
+        return Some(0.0);
+    }
+    if told.comes_over || told.is_met_on_wrong_side(&staging.ground, staging.cp) {
+        return Some(staging.ground.oncoming_y_m(told.cp.lane).max(staging.cp.position.y));
+    }
+    if told.leaves_opposite() {
+        return Some(staging.ground.opposing_y_m());
+    }
+    kerb_y_m(told, staging)
+        .or_else(|| told.strip_y_m(&staging.ground))
+        .or_else(|| {
+            let from_left_m = told.cp_from_left_m()?;
+            let left = (staging.cp.position, from_left_m);
+            let lane_m = lanes::left_lane_m(&staging.ground, staging.cp_came, left).filter(|_| !told.back_straight);
+            Some(lane_m.unwrap_or(staging.cp.position.y + from_left_m))
+        })
+        .or_else(|| {
+            beside(told).map(|side| staging.sv.position.y + if side == LeftRight::Left { LANE_M } else { -LANE_M })
+        })
+}
+
+/// How far somebody drives who leaves its line for where it touches, in no tighter bend than who sets off steers; nothing of who walks. [m]
+pub(super) fn room_m(told: &Told, staging: &Staging) -> f64 {
+    let (cp, length_m) = (staging.cp, size_of(&told.cp).0);
+    if VehicleSpec::of(told.cp.kind).length_m <= WHEELED_M {
+        return 0.0;
+    }
+    let (turn, came) = (math::wrap_angle(cp.heading - staging.cp_came), Vec2::from_heading(staging.cp_came));
+    let line_y_m = line_y_m(told, staging).filter(|_| told.cp.turning == Turning::No);
+    // Its rear axle goes over from one line to the other.
+    let arm_m = recrash_roads::arm_m(told.cp.kind, length_m);
+    let swings_m = arm_m * math::sin(turn.abs());
+    let aside_m = line_y_m.map_or(swings_m, |line_y_m| {
+        let over = Vec2::new(0.0, cp.position.y - line_y_m) - Vec2::from_heading(cp.heading) * arm_m;
+        came.cross(over).abs()
+    });
+    let radius_m = STOOD_RADIUS_M.max(STOOD_LENGTHS * length_m);
+    (4.0 * radius_m * aside_m).sqrt() + radius_m * turn.abs()
+}
+
+/// On which side of the ego's lane the partner comes along.
+fn beside(told: &Told) -> Option<LeftRight> {
+    match told.origin {
+        // It keeps its lane where the ego changes lanes.
+        Origin::Beside { side } => told.sv_aside().is_none().then_some(side),
+        Origin::Behind if told.cp.lane == Some(LaneWord::Opposing) => Some(LeftRight::Left),
+        _ => None,
+    }
+}
+
+/// Who stood close behind the ego comes out of its lane so far before the contact, with no tighter bend, or of so much of its length. [m]
+pub(super) const STOOD_OUT_M: f64 = 4.0;
+pub(super) const STOOD_RADIUS_M: f64 = 5.5;
+const STOOD_LENGTHS: f64 = 0.5;
+
+impl Told {
+    /// The line along the strip that the partner came along, to the left of the road's axis. [m]
+    pub(super) fn strip_y_m(&self, ground: &Ground) -> Option<f64> {
+        let strip = self.comes_along_strip()?;
+        let inner_m = ground.beside.iter().take_while(|kind| **kind != strip).map(|kind| kind.usual_width_m());
+        let middle_m = inner_m.sum::<f64>() + 0.5 * strip.usual_width_m();
+        let [left_m, right_m] = ground.lane_edges_m;
+        let own_y_m = ground.sv_pose(0.0).position.y;
+        let y_m = match self.origin {
+            Origin::Opposite => own_y_m + left_m + middle_m,
+            _ => own_y_m - right_m - middle_m,
+        };
+        ground.beside.contains(&strip).then_some(y_m)
+    }
+}
+
+/// Nobody backs farther, or drives farther out of a driveway. [m]
+const FARTHEST_M: f64 = 14.0;
+
+/// How far somebody has come at the contact who began in a stall or in a driveway, behind the kerb. [m]
+pub(super) fn out_m(told: &Told, staging: &Staging) -> f64 {
+    let strip_m = StripKind::Parking.usual_width_m();
+    let (half_m, position) = (0.5 * size_of(&told.cp).0, staging.cp.position);
+    // It came from the side to which it faces, of who reverses.
+    let gear = if told.cp.state == ContactState::Reversing { 1.0 } else { -1.0 };
+    let sine = gear * math::sin(staging.cp_came);
+    let lane_edge_m = staging.ground.kerbs_m[usize::from(sine < 0.0)] - 0.5 * strip_m;
+    let begins_m = match told.origin {
+        Origin::Stall { .. } => lane_edge_m + half_m,
+        _ => lane_edge_m + strip_m + half_m,
+    };
+    let aside_m = begins_m - position.y * sine.signum();
+    (aside_m / sine.abs().max(0.3)).clamp(0.0, FARTHEST_M)
+}

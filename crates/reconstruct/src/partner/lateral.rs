@@ -1,0 +1,159 @@
+//! Partners that leave the kerb or their lane, and come by: from where they do, and when.
+
+use crate::ego::pace::ego_paces;
+use crate::ground::way::Ground;
+use crate::pace::lead::Beside;
+use crate::pace::plain::{Pace, first_time};
+use crate::partner::beside::{STOOD_OUT_M, STOOD_RADIUS_M, line_y_m};
+use crate::told::crash::Told;
+use crate::told::side::Turning;
+use crate::touch::lanes;
+use crate::touch::staging::Staging;
+use crate::usual::LANE_M;
+use recrash_model::account::{ContactState, LeftRight, Origin};
+use recrash_model::geometry::{Pose, Vec2};
+use recrash_model::math;
+use recrash_model::template::Movement;
+use recrash_roads::Course;
+
+/// Who leaves its lane has begun so long before the contact, on so much of its way at least and at most. [s, m]
+const LEAVES_S: f64 = 2.5;
+const LEAVES_M: (f64, f64) = (12.0, 60.0);
+
+/// Who comes over in front of an ego that stops for it began to so long before that slowed. [s]
+const BEGUN_S: f64 = 0.7;
+
+/// Who leaves its lane keeps it until then: where it begins, and the poses that it drives by to the contact.
+pub(super) fn keeps_lane(told: &Told, staging: &Staging, pace: &Pace, arm_m: f64) -> Option<(Pose, Vec<Pose>)> {
+    let leaves = matches!(
+        told.cp.movement,
+        Some(
+            Movement::ChangingLanes | Movement::Merging | Movement::CrossingIntoOpposingLane | Movement::LaneDeparture
+        )
+    );
+    let leaves = leaves && !told.passes_from_behind()
+        || told.comes_along_kerb() && staging.ground.stands_m > 0.0 && !told.passes_from_behind()
+        || told.strip_y_m(&staging.ground).is_some() && told.cp.turning == Turning::No;
+    let over = told.comes_over || told.is_met_on_wrong_side(&staging.ground, staging.cp);
+    if !(leaves || told.cp.dodges || over) || told.cp.state != ContactState::Moving || pace.speed_mps == 0.0 {
+        return None;
+    }
+    let (cp, came) = (staging.cp, Vec2::from_heading(staging.cp_came));
+    let line_y_m = line_y_m(told, staging)?;
+    let usual_m = (LEAVES_S * told.cp.speed_mps).clamp(LEAVES_M.0, LEAVES_M.1);
+    // It had begun before the ego slowed.
+    let since_m = pace.driven_m - pace.speed_mps * (first_time(&pace.acts) - BEGUN_S);
+    let ego_brakes_s = || first_time(&ego_paces(told, &staging.ground, staging.sv_s_m).1.acts);
+    let over_m = match told.gives_way_to_merge {
+        true => since_m.max(usual_m),
+        false if told.stops_for_who_comes_over() => {
+            (told.cp.speed_mps * (told.contact_s - ego_brakes_s() + BEGUN_S)).clamp(usual_m, LEAVES_M.1)
+        }
+        false => usual_m,
+    };
+    let leaves = Pose { position: Vec2::new(cp.position.x - came.x * over_m, line_y_m), heading: staging.cp_came };
+    let mut course = Course::begin(arm_m);
+    let before_m = if course.curve(leaves, cp, false) { pace.driven_m - course.length_m() } else { return None };
+    let begin = Pose { position: leaves.position - came * before_m, ..leaves };
+    (before_m > 1.0).then(|| (begin, vec![leaves, cp]))
+}
+
+/// Who passes has come out of the ego's lane so far before the contact, and does so on so much of its way at most. [m]
+const OUT_M: f64 = 6.0;
+const COMES_OUT_M: f64 = 24.0;
+
+/// Who comes out to pass has not gone to the other side by more than this before. [m]
+const DIPS_M: f64 = 0.3;
+
+/// Who is at more than this to its road, away from whom it passes, is on its way out. [rad]
+const AWAY_RAD: f64 = 0.02;
+
+/// Who comes from behind the ego and passes it comes out of its lane, goes along beside it, and then comes too near: where it begins, and
+/// the poses that it drives by.
+pub(super) fn comes_by(told: &Told, staging: &Staging, pace: &Pace, arm_m: f64) -> Option<(Pose, Vec<Pose>)> {
+    if !told.passes_from_behind() {
+        return None;
+    }
+    let cp = staging.cp;
+    let comes_in = math::wrap_angle(cp.heading - staging.cp_came);
+    // Who stood close behind has less room for it.
+    let stood = told.comes_round_from_stand();
+    let (out_m, radius_m) = if stood { (STOOD_OUT_M, STOOD_RADIUS_M) } else { (OUT_M, LEAST_BY_RADIUS_M) };
+    // Who touches on its way out does not go along beside the ego first.
+    if stood && comes_in * (cp.position.y - staging.sv.position.y) > 0.0 {
+        return None;
+    }
+    let out_y_m = cp.position.y - 0.5 * out_m * comes_in;
+    // An ego that turns came along its line.
+    let turns = matches!(told.sv.turning, Turning::Left | Turning::Right);
+    let leaves = told.sv_aside().is_some();
+    let along = told.comes_along_kerb() || turns || leaves;
+    let own_y_m = if along { staging.ground.sv_pose(0.0).position.y } else { staging.sv.position.y };
+    // Who is yet on its way out comes straight out of its lane, and does not go to the side of whom it passes for that first.
+    let side = (cp.position.y - staging.sv.position.y).signum();
+    if !stood && comes_in * side > AWAY_RAD {
+        let late = lanes::from_lane(told, staging, pace, arm_m);
+        if late.is_some() || (own_y_m - out_y_m) * side > DIPS_M {
+            return late;
+        }
+    }
+    let back_m = (pace.driven_m - 0.5).min(out_m + COMES_OUT_M);
+    let bends_m = (4.0 * radius_m * (out_y_m - own_y_m).abs()).sqrt();
+    if back_m - out_m < bends_m {
+        return None;
+    }
+    between_lines(staging, pace, arm_m, [(back_m, own_y_m), (out_m, out_y_m)])
+}
+
+/// Who changed into the ego's lane behind it is back on its line so far before the contact, and took so long for it. [m]
+const CHANGED_M: f64 = 8.0;
+const CHANGES_OVER_M: f64 = 30.0;
+
+/// Who changed lanes behind the ego, and then came straight on: from the lane that it left, the one on its left where there is one.
+pub(super) fn changed_behind(told: &Told, staging: &Staging, pace: &Pace, arm_m: f64) -> Option<(Pose, Vec<Pose>)> {
+    let ground = &staging.ground;
+    if !told.cp.changed_lanes || told.origin != Origin::Behind || told.cp.state != ContactState::Moving {
+        return None;
+    }
+    let from = match told.cp.aside {
+        Some(to) => to.other(),
+        None if ground.lane > 0 => LeftRight::Left,
+        None if ground.lanes > 1 => LeftRight::Right,
+        None => return None,
+    };
+    let line_y_m = staging.sv.position.y + if from == LeftRight::Left { LANE_M } else { -LANE_M };
+    between_lines(staging, pace, arm_m, [(CHANGED_M + CHANGES_OVER_M, line_y_m), (CHANGED_M, staging.cp.position.y)])
+}
+
+/// The lane from which somebody came over before it stopped ahead of the ego, or beside it: the told one, else the one on its left where
+/// there is one.
+pub(super) fn came_over(told: &Told, ground: &Ground, arm_m: f64) -> Option<Beside> {
+    let from = match told.cp.came_over? {
+        Some(to) => to.other(),
+        None if ground.lane > 0 => LeftRight::Left,
+        None if ground.lanes > 1 => LeftRight::Right,
+        None => return None,
+    };
+    let along = matches!(told.origin, Origin::Ahead | Origin::Behind);
+    along.then_some(Beside { left_m: if from == LeftRight::Left { LANE_M } else { -LANE_M }, arm_m })
+}
+
+/// Along one line until so far before the contact, over to another by so far, and on to the contact: where it begins, and the poses that it
+/// drives by. Of each line how far before the contact and where beside the road's axis. [m]
+fn between_lines(staging: &Staging, pace: &Pace, arm_m: f64, lines: [(f64, f64); 2]) -> Option<(Pose, Vec<Pose>)> {
+    let (cp, came) = (staging.cp, Vec2::from_heading(staging.cp_came));
+    let [leaves, joins] = lines.map(|(back_m, y_m)| Pose {
+        position: Vec2::new(cp.position.x - came.x * back_m, y_m),
+        heading: staging.cp_came,
+    });
+    let mut course = Course::begin(arm_m);
+    if !(course.curve(leaves, joins, false) && course.curve(joins, cp, false)) {
+        return None;
+    }
+    let before_m = pace.driven_m - course.length_m();
+    let begin = Pose { position: leaves.position - came * before_m.max(0.0), ..leaves };
+    (before_m > 0.02).then(|| (begin, vec![leaves, joins, cp]))
+}
+
+/// No bend of who comes out to pass is tighter. [m]
+const LEAST_BY_RADIUS_M: f64 = 7.0;

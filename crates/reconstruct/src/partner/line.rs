@@ -1,0 +1,131 @@
+//! The line by which the partner comes to the contact.
+
+use crate::pace::plain::Pace;
+use crate::partner::turns::{self, TIGHTEST_LENGTHS, is_tight, with_its_turn};
+use crate::partner::{beside, lateral};
+use crate::told::crash::Told;
+use crate::told::side::{Turning, size_of};
+use crate::touch::staging::Staging;
+use crate::touch::{lanes, sweep};
+use crate::usual::beyond_m;
+use recrash_model::account::ContactState;
+use recrash_model::geometry::{Pose, Vec2};
+use recrash_model::math;
+use recrash_model::scenario::{ActorPlan, Leg, Place};
+use recrash_roads::Course;
+
+/// The partner's last way: its legs, where it begins, and how far it is.
+pub(super) struct OwnWay {
+    pub(crate) course: Vec<Leg>,
+    pub(crate) begin: Pose,
+    pub(crate) driven_m: f64,
+}
+
+/// The line by which the partner comes to the contact, as long as its pace needs. Of who turns as it touches a bend is the last of it.
+pub(super) fn course_to(told: &Told, staging: &Staging, pace: Pace, at: impl Fn(Pose) -> Place) -> (ActorPlan, Pose) {
+    if let Some(bend) = staging.bend.filter(|bend| bend.length_m + LEAST_BEFORE_M < pace.driven_m) {
+        let before = Staging { cp: bend.from, bend: None, ..staging.clone() };
+        let pace = Pace { acts: pace.acts.clone(), driven_m: pace.driven_m - bend.length_m, ..pace };
+        let (mut plan, begin) = line_to(told, &before, pace, &at);
+        let beyond = staging.cp.position + Vec2::from_heading(staging.cp.heading) * beyond_m(told.cp.speed_mps);
+        plan.course.pop();
+        plan.course.push(Leg::Curve { to: at(staging.cp), reverse: false });
+        if sweep::can_be_driven(told, begin, &plan.course) {
+            plan.course.push(Leg::Curve { to: at(Pose { position: beyond, ..staging.cp }), reverse: false });
+            return (plan, begin);
+        }
+    }
+    line_to(told, staging, pace, at)
+}
+
+/// Before its last bend somebody has come so far at least. [m]
+pub(super) const LEAST_BEFORE_M: f64 = 1.0;
+
+/// The same to where it touches, or begins its last bend.
+pub(super) fn line_to(told: &Told, staging: &Staging, pace: Pace, at: impl Fn(Pose) -> Place) -> (ActorPlan, Pose) {
+    let cp = &told.cp;
+    let ground = &staging.ground;
+    if let Some(begin_m) = staging.cp_follows_m.map(|at_m| at_m - pace.driven_m)
+        && (0.0..ground.first_m()).contains(&begin_m)
+    {
+        let legs =
+            vec![Leg::Lanes { roads: ground.route.clone(), until_m: None, lane: None, against: false, reverse: false }];
+        let begin = ground.sv_pose(begin_m);
+        let plan =
+            ActorPlan { speed_mps: pace.speed_mps, course: legs, acts: pace.acts, ..ActorPlan::standing(at(begin)) };
+        return (plan, begin);
+    }
+    let reverse = cp.state == ContactState::Reversing;
+    let gear = if reverse { -1.0 } else { 1.0 };
+    let arm_m = recrash_roads::arm_m(cp.kind, size_of(cp).0);
+    let motion = |heading: f64| Vec2::from_heading(heading) * gear;
+    let beyond =
+        Pose { position: staging.cp.position + motion(staging.cp.heading) * beyond_m(cp.speed_mps), ..staging.cp };
+    let length = |start: Pose| -> Option<f64> {
+        let mut course = Course::begin(arm_m);
+        course.curve(start, staging.cp, reverse).then(|| course.length_m())
+    };
+    // As far back as makes the line as long as what is driven.
+    let fitted = |aside: bool| -> Option<Pose> {
+        let mut back_m = pace.driven_m;
+        for _ in 0..30 {
+            let found = length(start(told, staging, back_m, aside, motion))?;
+            back_m = (back_m + pace.driven_m - found).max(0.1);
+        }
+        let begin = start(told, staging, back_m, aside, motion);
+        length(begin).is_some_and(|found| (found - pace.driven_m).abs() < 0.02).then_some(begin)
+    };
+    let on_lanes = with_its_turn(told, staging, &pace, arm_m)
+        .or_else(|| lateral::keeps_lane(told, staging, &pace, arm_m))
+        .or_else(|| lateral::comes_by(told, staging, &pace, arm_m))
+        .or_else(|| lateral::changed_behind(told, staging, &pace, arm_m))
+        .or_else(|| turns::turns_in(told, staging, &pace, arm_m))
+        .or_else(|| lanes::from_lane(told, staging, &pace, arm_m));
+    if let Some((begin, mut course)) = on_lanes {
+        course.push(beyond);
+        let course = course.into_iter().map(|pose| Leg::Curve { to: at(pose), reverse }).collect();
+        let plan = ActorPlan { speed_mps: pace.speed_mps, course, acts: pace.acts, ..ActorPlan::standing(at(begin)) };
+        return (plan, begin);
+    }
+    let straight = || Pose { position: staging.cp.position - motion(staging.cp.heading) * pace.driven_m, ..staging.cp };
+    // What is long cannot whip round: it comes straight.
+    let length_m = size_of(cp).0;
+    let whips = |begin: &Pose| {
+        let mut course = Course::begin(arm_m);
+        let long = reverse && length_m > LONG_M;
+        long && course.curve(*begin, staging.cp, reverse) && is_tight(&course, TIGHTEST_LENGTHS * length_m)
+    };
+    let fitted = fitted(true).or_else(|| fitted(false)).filter(|begin| !whips(begin));
+    let begin = fitted.unwrap_or_else(straight);
+    let course = vec![Leg::Curve { to: at(staging.cp), reverse }, Leg::Curve { to: at(beyond), reverse }];
+    let plan = ActorPlan { speed_mps: pace.speed_mps, course, acts: pace.acts, ..ActorPlan::standing(at(begin)) };
+    (plan, begin)
+}
+
+/// What is longer than this does not whip round in reverse. [m]
+const LONG_M: f64 = 6.0;
+
+/// Where the partner begins, this far back, headed as it came: in the lane it comes from, or so that an arc leads to the contact.
+fn start(told: &Told, staging: &Staging, back_m: f64, aside: bool, motion: impl Fn(f64) -> Vec2) -> Pose {
+    let came = staging.cp_came;
+    let way = motion(came);
+    let turn = math::wrap_angle(staging.cp.heading - came);
+    let mut position = staging.cp.position - way * back_m;
+    let turns = told.cp.turning != Turning::No && turn.abs() > 0.1;
+    let line_y_m = beside::line_y_m(told, staging).filter(|_| aside && !turns);
+    let pulls_out = aside && !turns && told.passes_from_behind();
+    if pulls_out {
+        // Out of the ego's lane.
+        position.y = if told.comes_along_kerb() { 0.0 } else { staging.sv.position.y };
+    } else if let Some(line_y_m) = line_y_m {
+        position.y = line_y_m;
+    } else if turn.abs() > 0.01 {
+        // An arc of a usual radius before the contact: beside the line of the contact, by what the arc gains.
+        let radius = if turns { 8.0_f64 } else { 15.0 }.min(back_m / turn.abs());
+        let (gain, along) = (radius * (1.0 - math::cos(turn)), radius * math::sin(turn.abs()));
+        position = staging.cp.position
+            - way * (along + (back_m - radius * turn.abs()).max(0.0))
+            - way.left() * (gain * turn.signum());
+    }
+    Pose { position, heading: came }
+}

@@ -1,0 +1,109 @@
+//! What each of the two is told to have done before the contact, one act after the other.
+
+use crate::told::doing::{Doing, least};
+use crate::told::zones::side_of;
+use recrash_model::account::{
+    Act, ActFact, ContactState, Fact, Kind, LeftRight, Other as OtherParty, Party, Source, StandReason, told as told_of,
+};
+use recrash_model::template::Movement;
+use recrash_model::zones::ContactZone;
+
+/// What is told of somebody until the contact that can be seen, in order.
+pub(super) fn told(party: &Party, state: ContactState) -> Vec<Doing> {
+    let mut acts: Vec<&ActFact> = party.acts.iter().filter(|fact| !fact.after_contact).collect();
+    acts.sort_by_key(|fact| fact.step);
+    let stands = |act: Act| matches!(act, Act::Stop | Act::Hold | Act::PullOver | Act::Park);
+    let at_line = party.reasons.iter().any(|fact| matches!(fact.value, StandReason::RedLight | StandReason::StopSign))
+        || !party.controls.is_empty();
+    // Who touches with its front was only about to pass.
+    let touches_beside = !party.zones.is_empty() && party.zones.iter().all(|zone| !zone.value.is_front());
+    let mut list: Vec<Doing> = Vec::new();
+    let mut standing = false;
+    for (number, fact) in acts.iter().enumerate() {
+        let stood = list.iter().any(|doing| stands(doing.act) || doing.act == Act::Reverse);
+        let skipped = match fact.act {
+            // Who was told to begin or go on while it drove drives already.
+            Act::SetOff => !standing && (stood || state != ContactState::SettingOff) || fact.begun && state.stands(),
+            // It stands there.
+            Act::Stop if standing => true,
+            // Who turned on its way to a light or a sign did so on another road, or has yet to.
+            Act::Turn => at_line && !stood && acts[number..].iter().any(|later| stands(later.act)),
+            Act::Park => list.last().is_some_and(|last| stands(last.act)),
+            // So did who came out of a lot and drove along since.
+            Act::PullOut => list.is_empty() && told_of(&party.movement) == Some(Movement::Straight),
+            // What somebody who stands, or had yet to, tried to.
+            Act::Reverse => fact.begun && state.stands(),
+            // Who had only begun to pass on a side has gone out to it.
+            Act::Pass if fact.begun => fact.side.is_none() || state.stands(),
+            Act::Pass => !touches_beside,
+            Act::Enter => fact.begun || !is_of_junction(fact),
+            act => least(act).is_none(),
+        };
+        let waits = match fact.act {
+            Act::OpenDoor | Act::Slow | Act::Follow | Act::FailToYield => true,
+            Act::SetOff | Act::Reverse => fact.begun,
+            _ => false,
+        };
+        let over = acts[number + 1..].iter().any(|later| later.act == Act::Turn);
+        let (step, after_other) = (fact.step, fact.after_other);
+        // "It then began to turn": it had set off for that, behind what the other did.
+        if standing && !state.stands() && after_other.is_some() && sets_off_for(fact.act) {
+            list.push(Doing { act: Act::SetOff, side: None, begun: false, over: false, step, after_other });
+        }
+        standing = stands(fact.act) || standing && waits;
+        if !skipped {
+            list.push(Doing { act: fact.act, side: fact.side, begun: fact.begun, over, step, after_other });
+        }
+    }
+    // "Stopped at the kerb" of who pulls out: it stood there.
+    if let [first, next, ..] = list.as_mut_slice()
+        && (first.act, next.act) == (Act::Stop, Act::PullOut)
+    {
+        first.act = Act::Hold;
+    }
+    // Who moves at the contact was slowing to its last stop.
+    if let Some(last) = list.last_mut().filter(|last| last.act == Act::Stop && !state.stands()) {
+        last.begun = true;
+    }
+    list.dedup_by_key(|doing| (doing.act, doing.side, doing.begun));
+    list
+}
+
+/// Whether somebody who stood has set off to do this.
+const fn sets_off_for(act: Act) -> bool {
+    matches!(act, Act::Turn | Act::UTurn | Act::Pass | Act::Enter | Act::Cross | Act::LaneChange | Act::Accelerate)
+}
+
+/// Whether the ego is told to have passed the partner: by its name, and nobody else has that.
+pub(super) fn passes_partner(sv: &Party, partner: &Party, others: &[OtherParty]) -> bool {
+    let last_word = |text: &str| text.to_lowercase().split_whitespace().next_back().map(str::to_owned);
+    let name = |fact: &Fact<Kind>| match &fact.source {
+        Source::Words { text, .. } => last_word(text),
+        _ => None,
+    };
+    let Some(partner) = partner.kind.as_ref().and_then(name) else { return false };
+    let named = |fact: &&ActFact| match &fact.source {
+        Source::Words { text, .. } => text.to_lowercase().contains(&partner),
+        _ => false,
+    };
+    let mut passed = sv.acts.iter().filter(|fact| fact.act == Act::Pass && !fact.after_contact);
+    partner != "av"
+        && passed.any(|fact| named(&fact))
+        && !others.iter().any(|other| name(&other.kind).as_ref() == Some(&partner))
+}
+
+/// Whether somebody is told to have entered a junction, and not a road or a lane, nor to have begun to.
+fn is_of_junction(fact: &ActFact) -> bool {
+    let Source::Words { text, .. } = &fact.source else { return false };
+    let text = text.to_lowercase();
+    ["intersection", "junction"].iter().any(|word| text.contains(word))
+        && !["begin", "began", "begun"].iter().any(|begun| text.starts_with(begun))
+}
+
+/// Who passes last passes on the side on which the ego is touched: what is told of the other side was said of something else.
+pub(super) fn passes_where_touched(acts: &mut [Doing], ego_zones: &[ContactZone]) {
+    let touched = side_of(ego_zones).map(|side| if side > 0.0 { LeftRight::Left } else { LeftRight::Right });
+    if let Some(last) = acts.last_mut().filter(|doing| doing.is_pass() && touched == doing.side.map(LeftRight::other)) {
+        last.side = None;
+    }
+}

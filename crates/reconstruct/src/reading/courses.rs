@@ -1,0 +1,190 @@
+//! What the acts tell of the ways of the two, beside their movements.
+
+use crate::reading::order::steps;
+use crate::told::crash::Told;
+use crate::told::doing::Doing;
+use crate::told::side::{Side, Slant, Turning};
+use crate::told::zones::side_of;
+use recrash_model::account::{
+    Account, Act, Act as Done, ActFact, ContactState, CrashType, LaneWord, LeftRight, Origin, Party, Source, Standing,
+    Striker, told,
+};
+use recrash_model::template::Movement;
+
+impl Told {
+    /// What the acts tell of the ways beside the movements.
+    pub(super) fn courses(&mut self, sv: &Party, partner: &Party) {
+        self.reactions(sv, partner);
+        self.goes_round(sv);
+        let drives_on =
+            |side: &Side| side.aside.is_some() && matches!(side.movement, Some(Movement::Straight | Movement::Passing));
+        self.sv.dodges = (drives_on(&self.sv) || self.sv.stopped_aside.is_some()) && self.sv_aside().is_some();
+        self.cp.dodges = drives_on(&self.cp) && self.cp_from_left_m().is_some();
+        let along = matches!(self.origin, Origin::Ahead | Origin::Behind | Origin::Beside { .. });
+        if self.cp.state == ContactState::Reversing && along {
+            let before = |fact: &&ActFact| !fact.after_contact && !fact.begun;
+            let reversed =
+                partner.acts.iter().filter(before).find(|fact| fact.act == Act::Reverse).map(|fact| fact.step);
+            let swing = |fact: &&ActFact| matches!(fact.act, Act::Turn | Act::Drift | Act::Swerve);
+            let last = partner.acts.iter().filter(before).rfind(swing);
+            self.cp.slants = last.and_then(|fact| match Some(fact.step) >= reversed {
+                true => Some(Slant::Swung),
+                false => {
+                    (fact.act == Act::Turn).then_some(Slant::Stood { side: fact.side, oncoming: faces(sv, partner) })
+                }
+            });
+        }
+        // Who reverses out of the crossing road came along the ego's, turned into that, and stood there.
+        if let (ContactState::Reversing, Origin::Cross { side }) = (self.cp.state, self.origin)
+            && let Some(turned) = turned_off(partner)
+        {
+            self.cp.slants = Some(Slant::Stood { side: Some(turned), oncoming: turned != side });
+        }
+        // Who meets a thing after a turn may be in it yet; not what lies across where it turned into.
+        if self.thing.is_some() && !self.at_entrance && self.sv.movement == Some(Movement::Straight) {
+            self.sv.turned = false;
+        }
+        if lies_before_turn(self, sv) {
+            (self.sv.turning, self.sv.turns_later) = (Turning::No, true);
+        }
+        // Whose turn no words tell has yet to begin it where it is hit from behind.
+        let unsaid = sv.movement.as_ref().is_some_and(|movement| !matches!(movement.source, Source::Words { .. }))
+            && !sv.acts.iter().any(|fact| fact.act == Act::Turn);
+        let slows = self.sv.slowed_from.is_some() || self.sv.state == ContactState::Stopped;
+        if unsaid && slows && self.origin == Origin::Behind && self.crash_type == CrashType::FrontToRear {
+            let turns = matches!(self.sv.turning, Turning::Left | Turning::Right);
+            self.sv.turns_later = turns && !self.enters();
+        }
+        // Who runs into the rear of who turns, or waits to, ahead of it has yet to turn.
+        let in_line = self.crash_type == CrashType::FrontToRear || self.is_thrown();
+        let follows = self.origin == Origin::Behind && in_line;
+        let turns = matches!(self.cp.turning, Turning::Left | Turning::Right);
+        if follows && turns && matches!(self.cp.state, ContactState::Moving | ContactState::SettingOff) {
+            (self.cp.turning, self.cp.turns_later) = (Turning::No, true);
+        }
+        for side in [&mut self.sv, &mut self.cp].into_iter().filter(|side| side.turns_later) {
+            side.acts.retain(|doing| !doing.is_turn());
+        }
+        if let Origin::Cross { side } = self.origin {
+            self.cp.turns_wide = self.crash_type == CrashType::HeadOn;
+            // To meet it head-on, who comes from the left turns to the right.
+            let turn =
+                partner.acts.iter().rev().find(|fact| fact.act == Act::Turn && !fact.after_contact && !fact.begun);
+            let by_type = self.cp.turns_wide.then(|| side.other());
+            let drives = self.cp.movement.is_none_or(|movement| {
+                matches!(
+                    movement,
+                    Movement::Straight
+                        | Movement::Passing
+                        | Movement::LaneDeparture
+                        | Movement::CrossingIntoOpposingLane
+                )
+            });
+            if self.cp.turning == Turning::No && drives && self.cp.state == ContactState::Moving {
+                self.cp.turning = match turn.and_then(|fact| fact.side).or(by_type) {
+                    Some(LeftRight::Left) => Turning::Left,
+                    Some(LeftRight::Right) => Turning::Right,
+                    None => Turning::No,
+                };
+            }
+        }
+    }
+}
+
+/// To which side somebody turned before it stood and reversed.
+fn turned_off(party: &Party) -> Option<LeftRight> {
+    let first = |of: fn(Act) -> bool| steps(party, of).into_iter().min();
+    let stood = first(|act| matches!(act, Act::Stop | Act::Hold))?.min(first(|act| act == Act::Reverse)?);
+    let turn = |fact: &&ActFact| fact.act == Act::Turn && !fact.after_contact && !fact.begun && fact.step < stood;
+    party.acts.iter().rfind(turn).and_then(|fact| fact.side)
+}
+
+/// Whether the two are told to have gone in opposite directions.
+fn faces(sv: &Party, partner: &Party) -> bool {
+    let ways = told(&sv.heading).zip(told(&partner.heading));
+    ways.is_some_and(|(sv, partner)| (3..=5).contains(&sv.eighths_to(partner)))
+}
+
+/// Whether something lies in the lane for turns that the ego came along, and only a column tells that it turned.
+fn lies_before_turn(told: &Told, sv: &Party) -> bool {
+    let turns = matches!(told.sv.turning, Turning::Left | Turning::Right);
+    let lane = matches!(told.sv.lane, Some(LaneWord::LeftTurn | LaneWord::RightTurn));
+    let by_words = sv.movement.as_ref().is_some_and(|fact| fact.source.is_told()) || sv.did(Act::Turn);
+    turns && lane && !by_words && told.thing.is_some() && told.edge.is_none()
+}
+
+impl Told {
+    /// Whether the ego came to a stop for a partner beside it that had begun to come over into its lane.
+    pub(super) fn stops_for_merge(&self, sv: &Party, partner: &Party) -> bool {
+        let step = |party: &Party, of: fn(Act) -> bool| {
+            let before = party.acts.iter().filter(|fact| !fact.after_contact && of(fact.act));
+            before.map(|fact| fact.step).min()
+        };
+        let over = step(partner, |act| matches!(act, Act::LaneChange | Act::Drift | Act::Swerve | Act::Enter));
+        let slows = step(sv, |act| matches!(act, Act::Slow | Act::Stop));
+        let came = told(&sv.standing) == Some(Standing::CameToStop) && self.sv.state == ContactState::Stopped;
+        let merges = matches!(self.cp.movement, Some(Movement::ChangingLanes | Movement::Merging));
+        let drives = self.cp.state == ContactState::Moving && !self.cp.stood_first && self.cp.phases.is_empty();
+        let simple = self.sv.phases.is_empty() && self.thing.is_none() && self.cp.turning == Turning::No;
+        let beside = matches!(self.origin, Origin::Beside { .. }) && self.ahead != Some(false);
+        came && merges && drives && simple && beside && over.is_some() && over < slows
+    }
+
+    /// Whether the partner is told to have been behind an ego that stood and set off, and nothing tells that it came up to it.
+    pub(super) fn was_in_queue(&self, account: &Account, partner: &Party) -> bool {
+        let went = self.sv.state == ContactState::SettingOff
+            || self.sv.state == ContactState::Moving && self.sv.stood_first && self.sv.turning == Turning::No;
+        let plain = self.cp.state == ContactState::Moving && !self.cp.stood_first && self.cp.turning == Turning::No;
+        let straight = matches!(self.cp.movement, None | Some(Movement::Straight)) && self.cp.manner.is_none();
+        let words = |source: &Source| match source {
+            Source::Words { text, .. } => text.to_lowercase(),
+            _ => String::new(),
+        };
+        let place = account.came_from.as_ref().map_or(String::new(), |fact| words(&fact.source));
+        let comes = |text: &str| ["approach", "came", "coming", "from behind"].iter().any(|word| text.contains(word));
+        let acts = &mut partner.acts.iter().filter(|fact| !fact.after_contact);
+        let only_there = acts.all(|fact| fact.act == Done::Follow && !comes(&words(&fact.source)));
+        self.origin == Origin::Behind
+            && went
+            && plain
+            && straight
+            && !self.pushed
+            && only_there
+            && place.contains("behind")
+            && !comes(&place)
+    }
+
+    /// What the ego did because of the partner: when, and to which side.
+    fn reactions(&mut self, sv: &Party, partner: &Party) {
+        if self.sv.state != ContactState::Moving || self.thing.is_some() {
+            return;
+        }
+        let turns = steps(partner, |act| act == Act::Turn).into_iter().min();
+        let reacts = steps(sv, |act| matches!(act, Act::Slow | Act::Swerve | Act::Drift)).into_iter().min();
+        let turning = matches!(self.cp.turning, Turning::Left | Turning::Right);
+        self.sv.reacts = turning && !self.cp.stood_first && turns.is_some() && turns < reacts;
+        // Who swerves from somebody that comes at it does so away from it.
+        let swerves = !steps(sv, |act| act == Act::Swerve).is_empty();
+        let straight =
+            matches!(self.sv.movement, Some(Movement::Straight | Movement::LaneDeparture | Movement::Passing));
+        if swerves && straight && self.sv.aside.is_none() && self.striker == Some(Striker::Cp) {
+            self.sv.aside = match self.origin {
+                Origin::Beside { side } | Origin::Cross { side } => Some(side.other()),
+                _ => side_of(&self.sv.zones).map(|side| if side > 0.0 { LeftRight::Right } else { LeftRight::Left }),
+            };
+        }
+    }
+
+    /// The ego that passes the partner on the other side goes round it there.
+    fn goes_round(&mut self, sv: &Party) {
+        let pass = sv.acts.iter().rfind(|fact| fact.act == Act::Pass && !fact.after_contact && !fact.begun);
+        let Some(to) = pass.and_then(|fact| fact.side).filter(|_| self.sv.acts.iter().any(Doing::is_pass)) else {
+            return;
+        };
+        let beside =
+            matches!(self.origin, Origin::Beside { side } | Origin::Parked { side: Some(side) } if side == to.other());
+        if beside && self.sv.movement == Some(Movement::Passing) && self.sv.aside.is_none() {
+            (self.sv.aside, self.sv.goes_round) = (Some(to), true);
+        }
+    }
+}

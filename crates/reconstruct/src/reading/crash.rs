@@ -1,0 +1,173 @@
+//! An account, read whole: everything that is told of the crash, and what has to be assumed.
+
+use crate::reading::order::{backs_behind, backs_first, stood_before, turns_green_late};
+use crate::reading::origin::{self, assumed_origin};
+use crate::reading::side::side;
+use crate::reading::things::{self, POST};
+use crate::reading::{acts, edge, others, trailer};
+use crate::told::choices::Choices;
+use crate::told::crash::Told;
+use crate::told::layout::Layout;
+use crate::told::lies::Lies;
+use crate::told::side::Turning;
+use crate::told::times::CONTACT_S;
+use recrash_model::account::{
+    Account, Act, ContactState, CrashType, FirstContact, KindGroup, LeftRight, Origin, PlaceKind, Untold, told,
+};
+
+impl Told {
+    /// # Errors
+    /// Why it cannot be staged.
+    pub(crate) fn of(account: &Account) -> Result<Self, Untold> {
+        let this = Self::read(account).ok_or(Untold::NoAccount)?;
+        if told(&account.first_contact) == Some(FirstContact::OthersOnly) {
+            return Err(Untold::OthersOnly);
+        }
+        match (this.place, this.origin) {
+            (PlaceKind::Circle, _) => Err(Untold::Place),
+            (_, Origin::Above) => Err(Untold::FromAbove),
+            _ if this.thing.is_some() && things::is_overhead(&account.sv) => Err(Untold::FromAbove),
+            // What it scrapes where the road bends on a hill has no edge, and no road here has heights.
+            _ if this.lies == Some(Lies::Edge) && things::is_on_slope(account) => Err(Untold::Place),
+            _ => Ok(this),
+        }
+    }
+
+    /// Whether or not it can be staged; nothing where no partner or no kind of crash is told.
+    pub(crate) fn read(account: &Account) -> Option<Self> {
+        let partner = &things::partner(account)?;
+        let crash_type = told(&account.crash_type)?;
+        let place = told(&account.place.kind).unwrap_or(PlaceKind::Street);
+        let mut assumed = Vec::new();
+        let kind = told(&partner.kind);
+        let thing = kind.filter(|kind| kind.group() == KindGroup::Object);
+        let mut sv = side(&account.sv, None, &mut assumed, "ego");
+        let mut cp = side(partner, kind, &mut assumed, "partner");
+        acts::passes_where_touched(&mut cp.acts, &sv.zones);
+        let passed = acts::passes_partner(&account.sv, partner, &account.others);
+        if !passed {
+            sv.acts.retain(|doing| !doing.is_pass());
+        }
+        // Beside one that turns it shows nothing.
+        if sv.turning != Turning::No {
+            cp.acts.retain(|doing| !doing.is_begun_pass());
+        }
+        let lies = thing.and_then(|_| Lies::of(partner, &sv, place));
+        cp.size = lies.and_then(Lies::size).or_else(|| things::size(partner)).or(cp.size);
+        let gate_swings = thing.is_some_and(|kind| things::swings(kind, partner, told(&account.striker)));
+        if gate_swings {
+            // Its post stands.
+            (cp.state, cp.state_told, cp.size) = (ContactState::Parked, false, Some(POST));
+        }
+        let origin = told(&account.came_from);
+        let origin = if passed { origin::passed_beside(account, &sv).or(origin) } else { origin };
+        let origin_told = origin.is_some();
+        let assumed_from =
+            origin::out_of_stall(account, crash_type, &sv, &cp).or_else(|| assumed_origin(crash_type, &sv, &cp));
+        let origin = origin.or(assumed_from).unwrap_or(Origin::Behind);
+        let comes_round = origin_told && origin::comes_round(origin, partner, cp.state, cp.movement);
+        let right = Some(LeftRight::Right);
+        let origin = match comes_round {
+            true if origin::leaves_driveway(partner) => Origin::Driveway { side: right },
+            true => Origin::Parked { side: right },
+            false => origin,
+        };
+        let edge = Some(origin).filter(|_| !gate_swings && account.door.is_none());
+        let edge = edge.and_then(|origin| edge::side(account, &sv, &cp, lies, origin));
+        if edge.is_some() && things::size(partner).is_none() {
+            cp.size = edge::size(kind).or(cp.size);
+        }
+        let dropped = things::dropped_by(account, partner, &sv, place).filter(|_| edge.is_none() && lies.is_none());
+        if dropped.is_some() {
+            cp.state = ContactState::Moving;
+            assumed.retain(|assumed| !assumed.starts_with("the partner is "));
+        }
+        let diagonal = edge::is_diagonal(partner, &cp);
+        cp.backs_in = origin::backs_in(partner, cp.state, origin, place);
+        let striker = told(&account.striker);
+        // What rolls into the ego's flank comes there after its front; that a thing is there first is only a rule.
+        let on_flank = !sv.zones.is_empty() && !sv.zones.iter().any(|zone| zone.is_front());
+        let into_flank = thing.is_some() && cp.state == ContactState::Moving && on_flank;
+        let order = told(&account.order).filter(|_| !into_flank && dropped.is_none());
+        let wanted_rig = trailer::rig(partner, &cp, origin);
+        let pushed_rolling = (partner.did(Act::Follow) || partner.did(Act::Slow))
+            && !(partner.did(Act::Stop) || partner.did(Act::Hold) || cp.state.stands());
+        let sv_reverses = sv.state == ContactState::Reversing;
+        let (backs_late, backs_early) = backs_behind(&account.sv, partner, origin);
+        let (backs_late, backs_early) = match (cp.state, sv.state) {
+            (ContactState::Reversing, ContactState::Moving | ContactState::SettingOff) => (backs_late, false),
+            (ContactState::Reversing, ContactState::Stopped) => (false, backs_early),
+            _ => (false, false),
+        };
+        let mut this = Self {
+            crash_type,
+            place,
+            sv,
+            cp,
+            thing,
+            slides: things::slides(partner) && dropped.is_none(),
+            gate_swings,
+            lies,
+            dropped,
+            at_entrance: things::is_at_entrance(partner) && edge.is_none() && !gate_swings,
+            edge,
+            diagonal,
+            lane_changed: things::changed_lanes_before(account),
+            walks_across: origin::walks_across(origin, partner),
+            origin,
+            origin_told,
+            comes_round,
+            comes_over: origin::comes_over(origin, partner, told(&partner.movement)),
+            order,
+            pushed: partner.did(Act::Pushed)
+                || crash_type == CrashType::Secondary
+                || account.others.iter().any(|other| other.touched_partner),
+            pusher: others::pusher(account),
+            thrower: others::thrower(account),
+            pusher_stands: others::pusher_stands(account),
+            pushed_rolling,
+            throwers: account.others.iter().filter(|other| other.touched_partner).count().min(1),
+            trailer_of: kind.filter(|_| trailer::touches(partner)),
+            wanted_rig,
+            rig: None,
+            striker,
+            lanes: told(&account.place.lanes),
+            layout: Layout::of(account, partner),
+            more_lanes: false,
+            crossed_near: false,
+            all_way: others::is_all_way(account),
+            green_late: turns_green_late(&account.sv),
+            reasons: others::reasons(account, origin),
+            others: account.others.len(),
+            door: told(&account.door),
+            posted_mps: told(&account.place.posted_mps),
+            wanted: Vec::new(),
+            extras: Vec::new(),
+            ahead: told(&account.ahead),
+            stood_before: stood_before(&account.sv, partner),
+            gives_way_to_merge: false,
+            backs_late,
+            backs_early,
+            backs_first: backs_first(&account.sv, partner).filter(|_| !sv_reverses),
+            queued: false,
+            close: true,
+            plainly: false,
+            back_straight: false,
+            contact_s: CONTACT_S,
+            choices: Choices::default(),
+            assumed,
+        };
+        this.queued = this.was_in_queue(account, partner);
+        this.courses(&account.sv, partner);
+        this.phases();
+        this.gives_way_to_merge = this.stops_for_merge(&account.sv, partner);
+        this.wanted = others::wanted(&this, account);
+        // Nothing is told of them that can be looked at.
+        let assumed = this.wanted.iter().filter(|extra| extra.is_assumed());
+        this.others -= assumed.map(|extra| extra.of.len()).sum::<usize>();
+        if this.origin_told {
+            this.speeds();
+        }
+        Some(this)
+    }
+}

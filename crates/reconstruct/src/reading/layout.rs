@@ -1,0 +1,157 @@
+//! The words for the road, and for the places on it.
+
+use crate::told::layout::{Counted, Layout, Standing};
+use recrash_model::account::{
+    Account, Act, ActFact, Fact, LaneWord, LeftRight, Origin, Party, RoadFeature, Source, told,
+};
+
+impl Counted {
+    fn of(text: &str) -> Option<Self> {
+        let words: Vec<&str> = text.split(|letter: char| !letter.is_alphanumeric()).collect();
+        let has = |word: &str| words.iter().any(|other| other.eq_ignore_ascii_case(word));
+        let number = match (has("second") || has("2nd"), has("third") || has("3rd")) {
+            (true, _) => 2,
+            (_, true) => 3,
+            _ => return None,
+        };
+        let from = match (has("left") || has("leftmost"), has("right") || has("rightmost")) {
+            (true, false) => LeftRight::Left,
+            (false, true) => LeftRight::Right,
+            _ => return None,
+        };
+        Some(Self { from, number })
+    }
+}
+
+impl Layout {
+    pub(super) fn of(account: &Account, partner: &Party) -> Self {
+        let has = |feature: RoadFeature| account.place.features.iter().any(|fact| fact.value == feature);
+        Self {
+            sv: standing(account, &account.sv),
+            cp: standing(account, partner),
+            narrow: has(RoadFeature::NarrowStreet),
+            one_way: has(RoadFeature::OneWay),
+            centre_line: has(RoadFeature::DoubleYellowLine),
+            turn_lane: has(RoadFeature::TurnLane) && goes_to_turn_lane(account, partner),
+            left_to_come: goes_to_turn_left(&account.sv),
+            rear_door: rear_door(account, partner),
+        }
+    }
+}
+
+/// Whether the partner is told in a lane for left turns beside an ego in the left lane, or goes out to its left there, past the ego.
+fn goes_to_turn_lane(account: &Account, partner: &Party) -> bool {
+    let lane = |party: &Party| told(&party.lane);
+    let out = |fact: &ActFact| matches!(fact.act, Act::LaneChange | Act::Pass) && fact.side == Some(LeftRight::Left);
+    let goes = match (lane(partner), told(&account.came_from)) {
+        (Some(LaneWord::LeftTurn), Some(Origin::Beside { side })) => side == LeftRight::Left,
+        (Some(LaneWord::LeftTurn) | None, Some(Origin::Behind)) => {
+            partner.acts.iter().any(|fact| out(fact) && !fact.after_contact)
+        }
+        _ => false,
+    };
+    lane(&account.sv) == Some(LaneWord::Left) && goes
+}
+
+fn standing(account: &Account, party: &Party) -> Standing {
+    let lane = party.lane.as_ref().and_then(|lane| Counted::of(text(&lane.source)?));
+    let double = sources(party).any(|source| text(source).is_some_and(|text| text.to_lowercase().contains("double")));
+    let stands = |fact: &&ActFact| matches!(fact.act, Act::Hold | Act::Park) && !fact.after_contact && !fact.begun;
+    let in_lane = double || party.acts.iter().rfind(stands).is_some_and(is_in_lane);
+    Standing { counted: lane, at_kerb: stands_at_kerb(account, party), in_lane }
+}
+
+/// "parked in the travel lane", and not partly there: the reader's words of who stands in a lane end with it.
+fn is_in_lane(fact: &ActFact) -> bool {
+    text(&fact.source).is_some_and(|text| {
+        let text = text.to_lowercase();
+        text.ends_with("lane") && !["partial", "partly"].iter().any(|word| text.contains(word))
+    })
+}
+
+/// So many bytes behind the words that somebody stands, at most, begin those for the kerb: "was stopped to the right of the AV in a curbside
+/// parking spot".
+const BEHIND_STAND: usize = 50;
+
+/// Whether words for the kerb, or for room to park, stand right behind those that somebody stood.
+fn stands_at_kerb(account: &Account, party: &Party) -> bool {
+    let stands = |fact: &&ActFact| {
+        matches!(fact.act, Act::Hold | Act::Stop | Act::Park | Act::PullOver) && !fact.after_contact && !fact.begun
+    };
+    let ends: Vec<usize> =
+        party.acts.iter().filter(stands).filter_map(|fact| place(&fact.source)).map(|at| at.1).collect();
+    let kerb = |fact: &&Fact<RoadFeature>| {
+        let words = text(&fact.source).map(str::to_lowercase).unwrap_or_default();
+        fact.value == RoadFeature::ParkingLane && words.contains("curb")
+    };
+    let kerbs = account.place.features.iter().filter(kerb).filter_map(|fact| place(&fact.source));
+    let mut kerbs = kerbs.map(|at| at.0);
+    kerbs.any(|kerb| {
+        ends.iter().any(|end| (*end..*end + BEHIND_STAND).contains(&kerb) || kerb + BEHIND_STAND > *end && kerb < *end)
+    })
+}
+
+/// Whether somebody is told to be about to turn left, or to do so after the contact, and not to have turned before.
+fn goes_to_turn_left(party: &Party) -> bool {
+    let left = |fact: &ActFact| fact.act == Act::Turn && fact.side == Some(LeftRight::Left);
+    let turned = party.acts.iter().any(|fact| fact.act == Act::Turn && !fact.after_contact && !fact.begun);
+    !turned && party.acts.iter().any(left)
+}
+
+/// So many words before "door" tell which one it is.
+const BEFORE_DOOR: usize = 5;
+
+/// Whether the words for the door that opened tell a rear one, or a front one.
+fn rear_door(account: &Account, partner: &Party) -> Option<bool> {
+    let opens = |party: &Party| {
+        party.acts.iter().filter(|fact| fact.act == Act::OpenDoor).map(|fact| fact.source.clone()).collect::<Vec<_>>()
+    };
+    let mut all = opens(&account.sv);
+    all.extend(opens(partner));
+    all.extend(account.door.iter().map(|fact| fact.source.clone()));
+    all.iter().filter_map(text).find_map(|text| {
+        let text = text.to_lowercase();
+        let words: Vec<&str> =
+            text.split(|letter: char| !letter.is_alphanumeric()).filter(|word| !word.is_empty()).collect();
+        let door = words.iter().position(|word| *word == "door")?;
+        words[door.saturating_sub(BEFORE_DOOR)..door].iter().rev().find_map(|word| match *word {
+            "rear" | "back" => Some(true),
+            "front" => Some(false),
+            _ => None,
+        })
+    })
+}
+
+fn sources(party: &Party) -> impl Iterator<Item = &Source> {
+    let kind = party.kind.iter().map(|fact| &fact.source);
+    let state = party.state.iter().map(|fact| &fact.source);
+    kind.chain(state).chain(party.acts.iter().map(|fact| &fact.source))
+}
+
+fn text(source: &Source) -> Option<&str> {
+    match source {
+        Source::Words { text, .. } => Some(text),
+        _ => None,
+    }
+}
+
+fn place(source: &Source) -> Option<(usize, usize)> {
+    match source {
+        Source::Words { start, end, .. } => Some((*start, *end)),
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn counted_lanes_have_a_number_from_the_left() {
+        let third = Counted::of("third lane from the right").unwrap();
+        assert_eq!((third.place(4), third.place(3), third.place(2)), (Some(1), Some(0), None));
+        let second = Counted::of("the second from the left lane").unwrap();
+        assert_eq!((second.place(4), second.words().as_str()), (Some(1), "the second lane from the left"));
+        assert_eq!(Counted::of("the right lane"), None);
+    }
+}

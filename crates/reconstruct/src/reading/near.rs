@@ -1,0 +1,150 @@
+//! What is told of others who have no part in what the ego does.
+
+use crate::reading::words::text;
+use crate::told::near::{Does, First, Near};
+use recrash_model::account::{Act, ActFact, Kind, KindGroup, LeftRight, Origin, Other};
+
+impl Does {
+    /// Whether it is more than to drive or to stand.
+    const fn is_deed(self) -> bool {
+        !matches!(self, Self::Untold | Self::Drives | Self::Slows | Self::Stands)
+    }
+
+    /// Whether it may be a part of a way with another deed.
+    const fn is_of_one_way(self) -> bool {
+        matches!(self, Self::Turns(_) | Self::PullsOut | Self::GoesAside(_) | Self::PullsOver(_) | Self::Crosses)
+    }
+
+    /// How far it takes somebody, of two deeds on one way.
+    const fn reach(self) -> u8 {
+        match self {
+            Self::Turns(_) | Self::TurnsLeft => 3,
+            Self::PullsOut | Self::Passes | Self::Crosses => 2,
+            Self::Changes(_) | Self::Backs => 1,
+            _ => 0,
+        }
+    }
+
+    /// Whether one who does this is drawn at a place.
+    const fn fits(self, place: Option<Origin>) -> bool {
+        use Origin as O;
+        match self {
+            Self::Changes(_) => matches!(place, None | Some(O::Ahead | O::Behind | O::Beside { .. })),
+            Self::Passes => matches!(place, None | Some(O::Behind | O::Beside { .. })),
+            Self::Backs => !matches!(place, Some(O::Ahead | O::Behind | O::Beside { .. })),
+            _ => true,
+        }
+    }
+
+    /// What an act tells of somebody at a place; nothing where it is not drawn.
+    fn of(fact: &ActFact, place: Option<Origin>, on_wheels: bool) -> Option<Self> {
+        let at_kerb = matches!(place, None | Some(Origin::Ahead | Origin::Beside { .. } | Origin::Parked { .. }));
+        let in_lanes = matches!(
+            place,
+            None | Some(Origin::Ahead | Origin::Beside { .. } | Origin::Opposite | Origin::Cross { .. })
+        );
+        Some(match fact.act {
+            Act::Follow | Act::SetOff | Act::Accelerate => Self::Drives,
+            Act::Cross | Act::Enter | Act::PullOut if !on_wheels => Self::Crosses,
+            Act::Enter if in_lanes => Self::Drives,
+            Act::Cross if matches!(place, None | Some(Origin::Cross { .. } | Origin::Opposite)) => Self::Drives,
+            Act::Pass if place == Some(Origin::Opposite) => Self::Drives,
+            Act::Reverse => Self::Backs,
+            Act::Slow => Self::Slows,
+            Act::Hold | Act::Stop | Act::Park => Self::Stands,
+            Act::Pass => Self::Passes,
+            Act::LaneChange => Self::Changes(fact.side),
+            Act::Turn if fact.side == Some(LeftRight::Left) && place == Some(Origin::Opposite) => Self::TurnsLeft,
+            Act::Turn if in_lanes && on_wheels => Self::Turns(fact.side),
+            Act::PullOut if at_kerb => Self::PullsOut,
+            Act::Drift | Act::Swerve if on_wheels => Self::GoesAside(fact.side),
+            Act::PullOver if on_wheels => Self::PullsOver(fact.side),
+            _ => return None,
+        })
+    }
+}
+
+impl Near {
+    /// Nothing where something is told of it that is not drawn.
+    pub(super) fn of(other: &Other, words: &str, number: usize) -> Option<Self> {
+        if !is_drawn(other) {
+            return None;
+        }
+        if other.kind.value.group() == KindGroup::Object {
+            let place = other.place.as_ref().map(|fact| fact.value);
+            let rolls = other.acts.iter().any(|fact| !fact.after_contact && moves(fact.act));
+            let does = if rolls { Does::Crosses } else { Does::Stands };
+            return Some(Self { place, across: false, does, also: None, first: First::Untold, number });
+        }
+        let said = |of: &[&str]| of.iter().any(|word| words.contains(word));
+        let place = other.place.as_ref().map(|fact| fact.value).or_else(|| {
+            if said(&["oncoming", "opposing"]) {
+                Some(Origin::Opposite)
+            } else if said(&["preceding", "leading", "lead "]) {
+                Some(Origin::Ahead)
+            } else if said(&["following", "trailing"]) {
+                Some(Origin::Behind)
+            } else {
+                None
+            }
+        });
+        let before: Vec<&ActFact> = other.acts.iter().filter(|fact| is_seen(fact)).collect();
+        let on_wheels = !matches!(other.kind.value.group(), KindGroup::OnFoot | KindGroup::Animal);
+        let crosses = on_wheels && before.iter().any(|fact| fact.act == Act::Cross);
+        let across = place.is_none() && (crosses || said(&["cross traffic", "cross-traffic", "crossing traffic"]));
+        let all: Vec<Does> = before.iter().map(|fact| Does::of(fact, place, on_wheels)).collect::<Option<_>>()?;
+        let mut deeds: Vec<Does> = all.iter().copied().filter(|does| does.is_deed()).collect();
+        deeds.dedup();
+        let (does, also) = match deeds.as_slice() {
+            [] => (all.last().copied().unwrap_or(Does::Untold), None),
+            [one] => (*one, None),
+            [.., last] if !deeds.iter().any(|does| does.is_of_one_way()) => (*last, None),
+            // Of two the one that takes it farther is drawn, and both are looked for.
+            &[first, last] if first.reach() >= last.reach() => (first, Some(last)),
+            &[first, last] => (last, Some(first)),
+            _ => return None,
+        };
+        // A queue stands.
+        let queue = other.place.as_ref().is_some_and(|fact| text(&fact.source).contains("queue"));
+        let does = if queue && does == Does::Untold { Does::Stands } else { does };
+        if !does.fits(place) || !also.is_none_or(|also| also.fits(place)) {
+            return None;
+        }
+        let drives = |fact: &&ActFact| matches!(fact.act, Act::Follow | Act::SetOff | Act::Enter | Act::Turn);
+        let in_view = on_wheels && matches!(place, Some(Origin::Ahead | Origin::Opposite));
+        let stood = before.first().is_some_and(|fact| matches!(fact.act, Act::Hold | Act::Stop | Act::Park));
+        let left = other.acts.iter().any(|fact| fact.act == Act::Leave && !fact.after_contact && !fact.begun);
+        let first = match does {
+            Does::Stands if in_view && !stood && before.iter().copied().any(|fact| drives(&fact)) => First::Came,
+            _ if left && !on_wheels => First::Left,
+            _ => First::Untold,
+        };
+        Some(Self { place, across, does, also, first, number })
+    }
+}
+
+/// Whether an act of somebody who is near may be seen before the contact: that it did not yield is no way of its own.
+fn is_seen(fact: &ActFact) -> bool {
+    !fact.after_contact && !fact.begun && !matches!(fact.act, Act::Leave | Act::FailToYield)
+}
+
+/// Whether a thing that does this is told to come along.
+const fn moves(act: Act) -> bool {
+    matches!(act, Act::Follow | Act::Enter | Act::PullOut | Act::Cross | Act::Roll)
+}
+
+/// Whether somebody can be put somewhere near: nothing that the ego goes over.
+fn is_drawn(other: &Other) -> bool {
+    let stands = |fact: &ActFact| fact.after_contact || matches!(fact.act, Act::Hold | Act::Park | Act::Drift);
+    let lies = |fact: &ActFact| stands(fact) || fact.act == Act::Fall || moves(fact.act);
+    match (other.kind.value, other.kind.value.group()) {
+        // What is fixed does nothing, whatever is told with it.
+        (Kind::Wall | Kind::Pole | Kind::Sign, _) => true,
+        (Kind::Barrier | Kind::Cone | Kind::Scooter, _) => other.acts.iter().all(stands),
+        (Kind::Debris | Kind::LooseWheel | Kind::TreeBranch | Kind::Cargo | Kind::Cart | Kind::Object, _) => {
+            other.acts.iter().all(lies)
+        }
+        (_, KindGroup::Object | KindGroup::Other) => false,
+        _ => true,
+    }
+}

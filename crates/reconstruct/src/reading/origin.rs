@@ -1,0 +1,103 @@
+//! From where the partner came, where that is not told in a word.
+
+use crate::told::side::{Side, is_on_foot};
+use crate::told::zones::side_of;
+use recrash_model::account::{
+    Account, Act, ContactState, CrashType, Kind, LeftRight, Origin, Party, PlaceKind, RoadFeature, Source, told,
+};
+use recrash_model::template::Movement;
+use recrash_model::zones::ContactZone;
+
+/// Whether the partner pulled out from the kerb behind the ego, and came round it: told are that it pulled out or entered traffic,
+/// and that it passed or came by on the left. Traffic keeps to the right, and so does who is parked.
+pub(super) fn comes_round(origin: Origin, partner: &Party, state: ContactState, movement: Option<Movement>) -> bool {
+    let passes = movement == Some(Movement::Passing) || partner.did(Act::Pass);
+    let from_there = match origin {
+        Origin::Parked { .. } => passes,
+        Origin::Behind | Origin::Beside { side: LeftRight::Left } => true,
+        _ => false,
+    };
+    let pulls_out = partner.did(Act::PullOut) || movement == Some(Movement::EnteringTraffic);
+    from_there && pulls_out && state == ContactState::Moving
+}
+
+/// Where a partner is whom the ego passes: beside it, where only a rule says that it comes from behind.
+pub(super) fn passed_beside(account: &Account, sv: &Side) -> Option<Origin> {
+    let from = account.came_from.as_ref()?;
+    let by_rule = matches!(from.source, Source::Rule { .. }) && from.value == Origin::Behind;
+    let touched = side_of(&sv.zones).filter(|_| by_rule && sv.state == ContactState::Moving)?;
+    Some(Origin::Beside { side: if touched > 0.0 { LeftRight::Left } else { LeftRight::Right } })
+}
+
+/// Whether an oncoming partner is told to have left its own side.
+pub(super) fn comes_over(origin: Origin, partner: &Party, movement: Option<Movement>) -> bool {
+    let left = |act: Act| partner.acts.iter().any(|fact| fact.act == act && !fact.after_contact && !fact.begun);
+    let told = match movement {
+        Some(Movement::CrossingIntoOpposingLane | Movement::LaneDeparture | Movement::ChangingLanes) => true,
+        Some(Movement::Straight | Movement::Passing) | None => left(Act::Drift) || left(Act::Swerve),
+        _ => false,
+    };
+    origin == Origin::Opposite && told
+}
+
+/// Whether the partner is told to have backed into a space at the kerb, ahead of the ego or behind it.
+pub(super) fn backs_in(partner: &Party, state: ContactState, origin: Origin, place: PlaceKind) -> bool {
+    let at_kerb = matches!(place, PlaceKind::Street | PlaceKind::Intersection | PlaceKind::Other);
+    let along = matches!(origin, Origin::Ahead | Origin::Behind);
+    at_kerb && along && state == ContactState::Reversing && partner.did(Act::Park)
+}
+
+/// Out of which stall somebody backs of whom nobody says from where it came, where the place has stalls beside the road.
+pub(super) fn out_of_stall(account: &Account, crash_type: CrashType, sv: &Side, cp: &Side) -> Option<Origin> {
+    let stalls = account.place.features.iter().any(|feature| feature.value == RoadFeature::Stall);
+    let backs = crash_type == CrashType::Backing && cp.state == ContactState::Reversing;
+    let side = side_of(&sv.zones).filter(|_| stalls && backs)?;
+    Some(Origin::Stall { side: Some(if side > 0.0 { LeftRight::Left } else { LeftRight::Right }) })
+}
+
+/// Whether somebody who pulled out is told to have done so from a driveway.
+pub(super) fn leaves_driveway(partner: &Party) -> bool {
+    let driveway = |source: &Source| match source {
+        Source::Words { text, .. } => text.to_lowercase().contains("driveway"),
+        _ => false,
+    };
+    partner.acts.iter().any(|fact| fact.act == Act::PullOut && !fact.after_contact && driveway(&fact.source))
+}
+
+/// From where a partner comes of whom nobody says it, where the type leaves no choice.
+pub(super) fn assumed_origin(crash_type: CrashType, sv: &Side, cp: &Side) -> Option<Origin> {
+    let rear = |side: &Side| side.zones.iter().any(|zone| zone.is_rear());
+    let front = |side: &Side| side.zones.iter().any(|zone| zone.is_front());
+    match crash_type {
+        CrashType::FrontToRear if rear(sv) => Some(Origin::Behind),
+        CrashType::FrontToRear if front(sv) => Some(Origin::Ahead),
+        CrashType::SingleVehicle => Some(Origin::Ahead),
+        CrashType::Backing if cp.state == ContactState::Reversing => {
+            Some(if rear(sv) && !front(sv) { Origin::Behind } else { Origin::Ahead })
+        }
+        CrashType::Backing => Some(Origin::Behind),
+        CrashType::HeadOn => Some(Origin::Opposite),
+        CrashType::Secondary if rear(sv) => Some(Origin::Behind),
+        CrashType::Lateral => {
+            let on = |zones: &[ContactZone]| sv.zones.iter().any(|zone| zones.contains(zone));
+            use ContactZone as Z;
+            if on(&[Z::Left, Z::FrontLeft, Z::RearLeft]) {
+                Some(Origin::Beside { side: LeftRight::Left })
+            } else if on(&[Z::Right, Z::FrontRight, Z::RearRight]) {
+                Some(Origin::Beside { side: LeftRight::Right })
+            } else {
+                None
+            }
+        }
+        _ => None,
+    }
+}
+
+/// Whether it is told of somebody on foot, or of an animal, that it went into the ego's way or across.
+pub(super) fn walks_across(origin: Origin, partner: &Party) -> bool {
+    let along = matches!(origin, Origin::Ahead | Origin::Beside { .. });
+    let on_foot = told(&partner.kind).and_then(Kind::partner_kind).is_some_and(is_on_foot);
+    let crosses = told(&partner.movement) == Some(Movement::NmCrossing);
+    let enters = [Act::Cross, Act::Enter, Act::PullOut].into_iter().any(|act| partner.did(act));
+    along && on_foot && (crosses || enters)
+}

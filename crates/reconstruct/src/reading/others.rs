@@ -1,0 +1,223 @@
+//! Others than the two: who is told of besides them, and why the ego stood.
+
+use crate::reading::story::{Story, is_at_junction, is_parked, lets_in_at_green};
+use crate::reading::words::{before_contact, span, text};
+use crate::told::crash::Told;
+use crate::told::near::Near;
+use crate::told::others::{Extra, GIVEN_WAY, Role, Thrower};
+use crate::told::queue::{leaves_lane, sets_off, waits_ahead};
+use recrash_model::account::{
+    self, Account, Act, ActFact, ContactState, Fact, Kind, KindGroup, Origin, Other, StandReason,
+};
+
+/// Things in the way, by their words.
+const THINGS: [(&str, Kind); 9] = [
+    ("debris", Kind::Debris),
+    ("shrub", Kind::TreeBranch),
+    ("tree", Kind::TreeBranch),
+    ("object", Kind::Object),
+    ("cone", Kind::Cone),
+    ("barricade", Kind::Cone),
+    ("construction", Kind::Cone),
+    ("fencing", Kind::Barrier),
+    ("gate", Kind::Gate),
+];
+
+/// Why the ego stood. A crossing where nobody else is told of is nobody that it stood for, and the partner is not one of the others.
+pub(super) fn reasons(account: &Account, origin: Origin) -> Vec<StandReason> {
+    let story = Story { account };
+    let any = |of: fn(Kind) -> bool| account.others.iter().any(|other| of(other.kind.value) && story.is_met(other));
+    let said = |reason: StandReason| account.sv.reasons.iter().any(|fact| fact.value == reason);
+    let told = account.sv.reasons.iter().map(|fact| fact.value);
+    // Where nobody else is named, it gave way to a partner that does not come from behind, or did what a queue, a light or a sign asks.
+    let somebody = account.others.iter().any(|other| story.is_near(other) && !is_parked(other));
+    let explained = origin != Origin::Behind
+        || [StandReason::Queue, StandReason::RedLight, StandReason::StopSign].into_iter().any(said);
+    // Whom it yields to is the partner, which nobody told to stand ahead.
+    let yields = |fact: &&Fact<StandReason>| fact.value == StandReason::Yield;
+    let yielded = account.sv.reasons.iter().find(yields).and_then(|fact| span(&fact.source));
+    let leads = |fact: &Fact<StandReason>| {
+        let partner = !matches!(origin, Origin::Behind | Origin::Ahead) && span(&fact.source) == yielded;
+        fact.value == StandReason::LeadVehicle && (yielded.is_none() || somebody || !partner)
+    };
+    let leads = account.sv.reasons.iter().any(leads);
+    // "A construction worker" is somebody, and a construction truck is whom it stands behind.
+    let works = said(StandReason::LeadVehicle) || said(StandReason::Pedestrian) && any(is_on_foot);
+    told.filter(|reason| match reason {
+        StandReason::Pedestrian => any(is_on_foot),
+        StandReason::Animal => any(|kind| kind.group() == KindGroup::Animal),
+        StandReason::Yield => somebody || !explained,
+        StandReason::BlockedPath => !works,
+        StandReason::LeadVehicle => leads,
+        _ => true,
+    })
+    .collect()
+}
+
+/// Whether a stop is told to be one for all arms.
+pub(super) fn is_all_way(account: &Account) -> bool {
+    let features = account.place.features.iter().map(|fact| &fact.source);
+    let signs = [Some(&account.sv), account.partner.as_ref()].into_iter().flatten().flat_map(|party| &party.controls);
+    let said = features.chain(signs.map(|fact| &fact.source)).map(text);
+    said.into_iter().any(|words| ALL_WAY.iter().any(|word| words.contains(word)))
+}
+
+/// Words for a stop with a sign on every arm.
+const ALL_WAY: [&str; 6] = ["four-way", "four way", "4-way", "4 way", "all-way", "all way"];
+
+/// Who threw the partner at the ego, where told.
+pub(super) fn pusher(account: &Account) -> Option<Kind> {
+    account.others.iter().find(|other| other.touched_partner).map(|other| other.kind.value)
+}
+
+/// Whether who touched the partner first is told to stand, and to do nothing else.
+pub(super) fn pusher_stands(account: &Account) -> bool {
+    let stands = |fact: &ActFact| matches!(fact.act, Act::Park | Act::Hold);
+    let touched = account.others.iter().find(|other| other.touched_partner);
+    let before = touched.map(|other| before_contact(other).map(stands).collect::<Vec<_>>());
+    before.is_some_and(|list| !list.is_empty() && list.into_iter().all(|stands| stands))
+}
+
+fn is_on_foot(kind: Kind) -> bool {
+    matches!(kind.group(), KindGroup::OnFoot | KindGroup::Cyclist)
+}
+
+/// Everybody who has a part in what the ego does, by what is told.
+pub(super) fn wanted(told: &Told, account: &Account) -> Vec<Extra> {
+    let story = Story { account };
+    let mut list: Vec<Extra> = Vec::new();
+    for (number, other) in account.others.iter().enumerate() {
+        let kind = other.kind.value;
+        let near = |list: &[Extra]| {
+            let before = list.iter().filter(|extra| extra.role == Role::Near).count();
+            let near = Near::of(other, &text(&other.kind.source), before).filter(|_| !other.touched_partner);
+            let (awaited, several) = (story.is_near(other), other.several);
+            let near = near.map(|near| if told.dropped == Some(number) { near.ahead() } else { near });
+            near.map(|near| Extra { awaited, several, ..Extra::near(near, number, kind) })
+        };
+        // Traffic that an ego passes which is not told to have slowed or stood is there.
+        let passes =
+            |role: Role| role == Role::Crosser && !told.sv.state.stands() && story.reactions().next().is_none();
+        let role = story.role(told, other).filter(|role| is_drawn(told, *role) && !passes(*role));
+        let Some(role) = role else {
+            list.extend(near(&list));
+            continue;
+        };
+        let drives_on = story.drives_on(other).filter(|_| role == Role::Lead);
+        let parked = other.acts.iter().any(|fact| text(&fact.source).contains("parked"));
+        let sets_off = sets_off(told) && !parked && !leaves_lane(told) || lets_in_at_green(told, other);
+        let goes = role == Role::Lead && sets_off || drives_on.is_some();
+        let first = drives_on == Some(true);
+        let again = role == Role::Lead && story.stands_again(other);
+        match list.iter_mut().find(|extra| extra.role == role) {
+            Some(known) if kind.partner_kind().is_none_or(|kind| known.kind.partner_kind() == Some(kind)) => {
+                known.of.push(number);
+                known.goes |= goes;
+                known.parked |= parked;
+                known.several = true;
+                known.first |= first;
+                known.again |= again;
+            }
+            Some(_) => list.extend(near(&list)),
+            None => {
+                let side = story.side(role, told, other);
+                let awaited = story.is_near(other) || other.several;
+                let behind = role == Role::Obstacle && story.is_back(other);
+                let between = role == Role::Beside && story.is_between(told, other);
+                let stays = role == Role::Walker && stays_close(other);
+                list.push(Extra {
+                    of: vec![number],
+                    kind,
+                    goes,
+                    parked,
+                    first,
+                    again,
+                    awaited,
+                    behind,
+                    between,
+                    stays,
+                    several: other.several,
+                    side,
+                    ..Extra::of_reason(role)
+                });
+            }
+        }
+    }
+    for extra in list.iter_mut().filter(|extra| extra.again) {
+        (extra.goes, extra.first) = (false, false);
+    }
+    for_reasons(&story, told, &mut list);
+    list
+}
+
+/// The same with those of whom only a reason to stand tells.
+fn for_reasons(story: &Story<'_>, told: &Told, list: &mut Vec<Extra>) {
+    let blocked = told.reasons.contains(&StandReason::BlockedJunction) && told.sv.state == ContactState::Stopped;
+    if blocked && told.thing.is_none() && list.iter().all(|extra| extra.role != Role::Beyond) {
+        list.push(Extra::of_reason(Role::Beyond));
+    }
+    // A queue that leaves no room behind a junction stands there.
+    let beyond = blocked && list.iter().any(|extra| extra.role == Role::Beyond);
+    let waits = |reason: &StandReason| match reason {
+        StandReason::Queue => !beyond,
+        reason => *reason == StandReason::LeadVehicle,
+    };
+    let queue = told.reasons.iter().any(waits);
+    if queue && is_drawn(told, Role::Lead) && list.iter().all(|extra| extra.role != Role::Lead) {
+        let several = told.reasons.contains(&StandReason::Queue);
+        list.insert(0, Extra { several, ..Extra::of_reason(Role::Lead) });
+    }
+    let in_way = list.iter().any(|extra| matches!(extra.role, Role::Lead | Role::Obstacle));
+    let thing = thing_in_way(story.account).filter(|_| !in_way && is_drawn(told, Role::Thing));
+    if let Some(kind) = thing.filter(|_| told.reasons.contains(&StandReason::BlockedPath)) {
+        list.push(Extra { kind, ..Extra::of_reason(Role::Thing) });
+    }
+    // It gave way, and nobody says to whom.
+    let named = story.account.others.iter().any(|other| story.is_near(other));
+    let named = named || list.iter().any(|extra| GIVEN_WAY.contains(&extra.role));
+    let role = if is_at_junction(told) { Role::Crosser } else { Role::Oncoming };
+    if told.reasons.contains(&StandReason::Yield) && !named && is_drawn(told, role) {
+        list.push(Extra::of_reason(role));
+    }
+}
+
+/// Whether one with this part can be drawn in this crash.
+fn is_drawn(told: &Told, role: Role) -> bool {
+    let drives = matches!(told.sv.state, ContactState::Stopped | ContactState::Moving | ContactState::SettingOff);
+    match role {
+        Role::Kerb | Role::Beside | Role::Near => true,
+        Role::Obstacle | Role::Oncoming | Role::Merger | Role::Backer | Role::Abreast => drives,
+        Role::Passed => told.thing.is_none(),
+        // Who was in the way of an ego that stood, and has left, may have left something there.
+        Role::Walker if told.thing.is_some() => drives && sets_off(told),
+        // Ahead of a partner that is ahead itself, and stands or backs there.
+        Role::Lead => drives && told.thing.is_none() && (told.origin != Origin::Ahead || waits_ahead(told)),
+        Role::Slower | Role::Thing => drives && told.thing.is_none() && told.origin != Origin::Ahead,
+        _ => drives && told.thing.is_none(),
+    }
+}
+
+/// What a thing is that stood in the ego's way, by the words for why it stood.
+fn thing_in_way(account: &Account) -> Option<Kind> {
+    let reason = account.sv.reasons.iter().find(|fact| fact.value == StandReason::BlockedPath)?;
+    let words = text(&reason.source);
+    THINGS.iter().find(|(word, _)| words.contains(word)).map(|(_, kind)| *kind)
+}
+
+/// Whether who is on foot is told last to stand or to stay, and not to have crossed.
+fn stays_close(other: &Other) -> bool {
+    let crosses = before_contact(other).any(|fact| fact.act == Act::Cross);
+    !crosses && before_contact(other).last().is_some_and(|fact| matches!(fact.act, Act::Hold | Act::Stop))
+}
+
+/// From where who touched the partner first came, where that is told.
+pub(super) fn thrower(account: &Account) -> Option<Thrower> {
+    let other = account.others.iter().find(|other| other.touched_partner)?;
+    let changes = |fact: &&account::ActFact| fact.act == account::Act::LaneChange && !fact.after_contact;
+    match other.place.as_ref().map(|fact| fact.value) {
+        Some(Origin::Beside { side }) => Some(Thrower::Beside(side)),
+        Some(Origin::Cross { side }) => Some(Thrower::Cross(side)),
+        // Who changes to its right comes from the left.
+        _ => other.acts.iter().find(changes)?.side.map(|side| Thrower::Beside(side.other())),
+    }
+}

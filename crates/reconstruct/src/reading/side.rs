@@ -1,0 +1,254 @@
+//! What is told of one side of the crash.
+
+use crate::reading::turns::{last_way, leaves_line, turned_before, turned_before_its_stop, went_on_straight};
+use crate::reading::{acts, phases, sizes, things};
+use crate::told::side::{Side, Slowed, Turning};
+use crate::told::sizes::size_of;
+use recrash_model::account::{
+    Act, ActFact, ContactState, Control, ControlDevice, Kind, KindGroup, LeftRight, Manner, Obeyed, Party, SignalState,
+    Source, SpeedMeaning, Standing, told,
+};
+use recrash_model::template::Movement;
+use recrash_model::zones::ContactZone;
+
+/// What is told of one side.
+pub(super) fn side(party: &Party, kind: Option<Kind>, assumed: &mut Vec<String>, who: &str) -> Side {
+    let kind = kind.or_else(|| told(&party.kind));
+    let partner_kind = kind.and_then(Kind::partner_kind);
+    if partner_kind.is_none() && who == "partner" {
+        assumed.push("the partner is a passenger car".to_owned());
+    }
+    let movement = told(&party.movement);
+    let impact_mps =
+        party.speeds.iter().find(|speed| speed.value.meaning == SpeedMeaning::Impact).map(|speed| speed.value.mps);
+    let state = told(&party.state);
+    let slides = state.is_none() && kind.is_some_and(|kind| kind.group() == KindGroup::Object) && things::slides(party);
+    let state = if slides { Some(ContactState::Moving) } else { state };
+    let state_told = state.is_some();
+    let state = state.unwrap_or_else(|| match movement {
+        Some(Movement::Stopped) => ContactState::Stopped,
+        Some(Movement::Parked) => ContactState::Parked,
+        Some(Movement::Backing) => ContactState::Reversing,
+        _ if impact_mps == Some(0.0) => ContactState::Stopped,
+        _ if kind.is_some_and(|kind| kind.group() == KindGroup::Object) => ContactState::Stopped,
+        _ => ContactState::Moving,
+    });
+    // Who moves backwards moves.
+    let backs = state == ContactState::Moving
+        && (movement == Some(Movement::Backing) || parks_backing(party))
+        && !went_on(party);
+    let state = if backs { ContactState::Reversing } else { state };
+    // Who parks in the story comes to a stop in it.
+    let came_to_park = who == "ego" && state == ContactState::Parked && came_there(party);
+    let state = if came_to_park { ContactState::Stopped } else { state };
+    if !state_told {
+        assumed.push(format!("the {who} is {} at the contact", state.label()));
+    }
+    let turned = |side: LeftRight| {
+        party.acts.iter().any(|fact| fact.act == Act::Turn && fact.side == Some(side) && !fact.after_contact)
+    };
+    let turning = match movement {
+        Some(Movement::LeftTurn) => Turning::Left,
+        Some(Movement::RightTurn) => Turning::Right,
+        Some(Movement::UTurn) => Turning::Round,
+        None if turned(LeftRight::Left) => Turning::Left,
+        None if turned(LeftRight::Right) => Turning::Right,
+        Some(Movement::Stopped) if who == "ego" => turned_before_its_stop(party),
+        Some(Movement::Straight) if who == "ego" => turned_before(party),
+        _ => Turning::No,
+    };
+    // The last before the contact is the one that led to it. Who enters a lane beside its own does so to a side.
+    let aside = party
+        .acts
+        .iter()
+        .filter(|fact| (leaves_line(fact.act) || fact.act == Act::Enter) && !fact.after_contact)
+        .filter_map(|fact| fact.side)
+        .next_back();
+    // It stood where it did something after it, or held its place.
+    let last = party.acts.iter().filter(|fact| !fact.after_contact).map(|fact| fact.step).max();
+    let stood_first = state == ContactState::Moving
+        && party.acts.iter().any(|fact| {
+            let stands = match fact.act {
+                Act::Hold | Act::SetOff => true,
+                Act::Stop => Some(fact.step) < last,
+                _ => false,
+            };
+            stands && !fact.after_contact && !fact.begun
+        });
+    let slows = party.acts.iter().any(|fact| matches!(fact.act, Act::Slow | Act::Stop) && !fact.after_contact);
+    let slows = slows && (!stood_first || slowed_after_its_stand(party));
+    let slowed_from = (slows && !gained_last(party) && state == ContactState::Moving).then(|| {
+        let approach = party.speeds.iter().find(|speed| speed.value.meaning == SpeedMeaning::Approach);
+        Slowed(approach.map(|speed| speed.value.mps).filter(|_| !stood_first))
+    });
+    // Of somebody on foot, an animal or a thing the state says enough.
+    let rides = |kind: Kind| matches!(kind, Kind::ScooterRider | Kind::Skateboarder);
+    let drives = kind.is_none_or(|kind| {
+        rides(kind) || !matches!(kind.group(), KindGroup::OnFoot | KindGroup::Animal | KindGroup::Object)
+    });
+    let phases = match state_told && state != ContactState::Parked && (drives || who == "ego") {
+        true => phases::told(party, state),
+        false => Vec::new(),
+    };
+    let mut acts = if drives || who == "ego" { acts::told(party, state) } else { Vec::new() };
+    if kind.is_some_and(rides) {
+        // On small wheels it turns at once.
+        acts.retain(|doing| !doing.is_turn());
+    }
+    let stopped = last_way(party).filter(|_| state == ContactState::Stopped && turning == Turning::No && who == "ego");
+    let stopped_aside = stopped.filter(|fact| leaves_line(fact.act) || fact.act == Act::Pass && fact.side.is_some());
+    let aside = stopped_aside.and_then(|fact| fact.side).or(aside);
+    let stopped_aside = stopped_aside.map(|fact| fact.act);
+    let gains = gained_last(party) && state == ContactState::Moving && !stood_first && phases.is_empty();
+    let changed_lanes = matches!(movement, None | Some(Movement::Straight))
+        && party.acts.iter().any(|fact| fact.act == Act::LaneChange && !fact.after_contact && !fact.begun);
+    let passes = movement == Some(Movement::ChangingLanes)
+        && party.acts.iter().any(|fact| fact.act == Act::Pass && !fact.after_contact && !fact.begun);
+    Side {
+        aside,
+        changed_lanes,
+        merges_in: merges_in(party, movement),
+        came_over: came_over(party),
+        passes,
+        goes_round: false,
+        returns: returns(party),
+        gains,
+        reacts: false,
+        stopped_aside,
+        turns_later: false,
+        turned: turning != Turning::No
+            && (party.acts.iter().any(|fact| fact.act == Act::Turn && fact.done)
+                || movement == Some(Movement::Straight)
+                || movement == Some(Movement::Stopped) && went_on_straight(party)),
+        completes: is_completing(party, movement),
+        turns_wide: false,
+        dodges: false,
+        slants: None,
+        backs_in: false,
+        slowed_from,
+        stood_first,
+        came_to_park,
+        came_there: came_there(party),
+        stands_from_start: told(&party.standing) == Some(Standing::FromTheStart),
+        phases,
+        acts,
+        kind: partner_kind.unwrap_or_default(),
+        size: kind.and_then(|kind| sizes::told(party, kind).or_else(|| size_of(kind))),
+        state,
+        state_told,
+        movement,
+        turning,
+        only_above_or_below: !party.zones.is_empty()
+            && party.zone_values().iter().all(|zone| matches!(zone, ContactZone::Top | ContactZone::Bottom)),
+        only_below: !party.zones.is_empty() && party.zone_values().iter().all(|zone| *zone == ContactZone::Bottom),
+        zones: party
+            .zone_values()
+            .into_iter()
+            .filter(|z| !matches!(z, ContactZone::Top | ContactZone::Bottom))
+            .collect(),
+        manner: manner(party),
+        impact_mps,
+        speed_mps: 0.0,
+        lane: told(&party.lane),
+        control: control(party),
+    }
+}
+
+/// How fast somebody is told to have driven last, since it stood; who moved slowly where no word of it stands with the last that it did
+/// went on so.
+fn manner(party: &Party) -> Option<Manner> {
+    let before = || party.acts.iter().filter(|fact| !fact.after_contact);
+    let stood =
+        before().filter(|fact| matches!(fact.act, Act::Stop | Act::Hold) && !fact.begun).map(|fact| fact.step).max();
+    let since = before().filter(|fact| Some(fact.step) > stood);
+    let last =
+        since.filter(|fact| fact.manner.is_some() || fact.act == Act::Accelerate).max_by_key(|fact| fact.step)?;
+    last.manner
+}
+
+/// Whether the first that is told of somebody who is parked is how it came there.
+fn came_there(party: &Party) -> bool {
+    let stands = |fact: &&ActFact| {
+        matches!(fact.act, Act::Stop | Act::PullOver | Act::Hold | Act::Park) && !fact.after_contact && !fact.begun
+    };
+    let first = party.acts.iter().filter(stands).min_by_key(|fact| fact.step);
+    first.is_some_and(|fact| matches!(fact.act, Act::Stop | Act::PullOver))
+}
+
+/// To which side somebody changed lanes before it first stood; who passed on one side came back to the other.
+fn came_over(party: &Party) -> Option<Option<LeftRight>> {
+    let before = || party.acts.iter().filter(|fact| !fact.after_contact && !fact.begun);
+    let stands = before().filter(|fact| matches!(fact.act, Act::Stop | Act::Hold)).map(|fact| fact.step).min()?;
+    let last =
+        before().filter(|fact| fact.act == Act::LaneChange && fact.step < stands).max_by_key(|fact| fact.step)?;
+    let passed = before().filter(|fact| fact.act == Act::Pass && fact.step < last.step).find_map(|fact| fact.side);
+    Some(last.side.or(passed.map(LeftRight::other)))
+}
+
+/// Whether the last two lane changes before the contact that are told of somebody go to opposite sides.
+fn returns(party: &Party) -> bool {
+    let changes = party.acts.iter().filter(|fact| fact.act == Act::LaneChange && !fact.after_contact);
+    let sides: Vec<LeftRight> = changes.filter_map(|fact| fact.side).collect();
+    matches!(sides.as_slice(), [.., before, last] if before != last)
+}
+
+/// Whether somebody is told to have been completing a lane change.
+fn is_completing(party: &Party, movement: Option<Movement>) -> bool {
+    let changes = matches!(movement, Some(Movement::ChangingLanes | Movement::Merging));
+    let last = party.acts.iter().rfind(|fact| fact.act == Act::LaneChange && !fact.after_contact && !fact.begun);
+    changes && last.is_some_and(|fact| fact.done)
+}
+
+/// Whether somebody who stood and set off is told to have slowed after it.
+fn slowed_after_its_stand(party: &Party) -> bool {
+    let before = || party.acts.iter().filter(|fact| !fact.after_contact && !fact.begun);
+    let last = before().map(|fact| fact.step).max();
+    // Who moves at the contact had not come to a stop that is told last.
+    let reached = |fact: &ActFact| matches!(fact.act, Act::Hold | Act::SetOff | Act::Stop) && Some(fact.step) < last;
+    let stood = before().filter(|fact| reached(fact)).map(|fact| fact.step).max();
+    before().filter(|fact| matches!(fact.act, Act::Slow | Act::Stop)).map(|fact| fact.step).max() > stood
+}
+
+/// Whether the last that is told of somebody is that it reversed, and parked.
+fn parks_backing(party: &Party) -> bool {
+    let acts: Vec<Act> = party.acts.iter().filter(|fact| !fact.after_contact).map(|fact| fact.act).collect();
+    acts.ends_with(&[Act::Reverse, Act::Park])
+}
+
+/// Whether somebody is told to have driven on, forwards, after it had backed.
+fn went_on(party: &Party) -> bool {
+    let before = || party.acts.iter().filter(|fact| !fact.after_contact && !fact.begun);
+    let backed = before().filter(|fact| fact.act == Act::Reverse).map(|fact| fact.step).max();
+    let goes = |act: Act| matches!(act, Act::Enter | Act::Cross | Act::Pass);
+    backed.is_some_and(|backed| before().any(|fact| fact.step > backed && goes(fact.act)))
+}
+
+/// Whether the last change of speed before the contact that is told is a gain.
+fn gained_last(party: &Party) -> bool {
+    let changes = |fact: &&ActFact| {
+        matches!(fact.act, Act::Accelerate | Act::Slow | Act::Stop) && !fact.after_contact && !fact.begun
+    };
+    party.acts.iter().rfind(changes).is_some_and(|fact| fact.act == Act::Accelerate)
+}
+
+/// The signal or sign in front of somebody; who is told to have run one had one.
+fn control(party: &Party) -> Option<Control> {
+    let ran = |device, state| Some(Control { device, state, obeyed: Some(Obeyed::No) });
+    if party.did(Act::RunRed) {
+        return ran(ControlDevice::Signal, Some(SignalState::Red));
+    }
+    if party.did(Act::RunStop) {
+        return ran(ControlDevice::StopSign, None);
+    }
+    // What is said last is nearest to the contact.
+    party.controls.last().map(|fact| fact.value)
+}
+
+/// Whether somebody is told to change lanes "into" something that is no lane with a name, to no side: into the lane of whom it touches.
+fn merges_in(party: &Party, movement: Option<Movement>) -> bool {
+    let into = |source: &Source| matches!(source, Source::Words { text, .. } if text.to_lowercase().ends_with(" into"));
+    let changes = |fact: &&ActFact| fact.act == Act::LaneChange && !fact.after_contact && !fact.begun;
+    let last = party.acts.iter().rfind(changes);
+    let merges = matches!(movement, Some(Movement::Merging | Movement::ChangingLanes)) && party.lane.is_none();
+    merges && last.is_some_and(|fact| fact.side.is_none() && into(&fact.source))
+}

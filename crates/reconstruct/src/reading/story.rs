@@ -1,0 +1,385 @@
+//! What the words tell of somebody else: whether the ego acted for it, where it is, and what it is to the ego.
+
+use crate::reading::words::{before_contact, span, text};
+use crate::told::crash::Told;
+use crate::told::others::Role;
+use crate::told::queue::sets_off;
+use crate::told::side::Turning;
+use crate::told::zones::side_of;
+use recrash_model::account::{
+    Account, Act, ActFact, ContactState, KindGroup, LeftRight, Origin, Other, PlaceKind, SignalState, StandReason,
+};
+use recrash_model::template::Movement;
+
+/// Who is named no farther behind the words that the ego slowed or stood is whom it did so for; of who is on foot, and of animals, nor
+/// farther before them. [byte]
+const NAMED_WITHIN: usize = 70;
+const NAMED_BEFORE: usize = 160;
+
+/// Who is named no farther behind the words that the ego passed is whom it passed. [byte]
+const PASSES_WITHIN: usize = 12;
+
+/// Whether somebody is told to be parked.
+pub(super) fn is_parked(other: &Other) -> bool {
+    text(&other.kind.source).contains("parked") || before_contact(other).any(|fact| text(&fact.source).contains("park"))
+}
+
+/// Whether the ego stands on though its light has turned green, and lets in who comes from beside the road: the queue ahead, of which no
+/// deed is told, has driven on.
+pub(super) fn lets_in_at_green(told: &Told, other: &Other) -> bool {
+    let green = told.sv.control.is_some_and(|said| said.state == Some(SignalState::TurnedGreen));
+    let blocked = told.reasons.iter().any(|why| matches!(why, StandReason::BlockedJunction | StandReason::BlockedPath));
+    let stays = told.sv.state == ContactState::Stopped && green && !blocked;
+    stays && told.comes_from_aside() && before_contact(other).next().is_none()
+}
+
+/// Whether the road that the ego is on crosses another one there.
+pub(super) fn is_at_junction(told: &Told) -> bool {
+    told.place == PlaceKind::Intersection || told.is_controlled() || told.sv.turning != Turning::No
+}
+
+/// Whether the ego goes round something.
+fn goes_round(told: &Told) -> bool {
+    told.sv_aside().is_some_and(|aside| aside.from_t_m == 0.0 && told.sv.movement != Some(Movement::ParkingManeuver))
+        || told.sv.movement == Some(Movement::Passing)
+}
+
+/// Whether the ego keeps its lane.
+fn is_straight(told: &Told) -> bool {
+    told.sv.turning == Turning::No && told.sv_aside().is_none()
+}
+
+/// What the words tell of somebody else.
+pub(super) struct Story<'a> {
+    pub(super) account: &'a Account,
+}
+
+impl Story<'_> {
+    /// What the ego did for somebody: where the words stand. That it stood when it was struck, said with its name, is nothing of that.
+    pub(super) fn reactions(&self) -> impl Iterator<Item = (usize, usize)> {
+        let reacts = |fact: &&ActFact| {
+            let acts = matches!(fact.act, Act::Slow | Act::Stop | Act::Hold | Act::Swerve | Act::Drift);
+            let named = ["the ", "a ", "its "].iter().any(|article| text(&fact.source).starts_with(article));
+            acts && !fact.after_contact && !named
+        };
+        let acts = self.account.sv.acts.iter().filter(reacts).map(|fact| &fact.source);
+        acts.chain(self.account.sv.reasons.iter().map(|fact| &fact.source)).filter_map(span)
+    }
+
+    /// Whether somebody is named with the words that the ego slowed or stood, or what it did is told with them: the headline may have
+    /// named it.
+    pub(super) fn is_near(&self, other: &Other) -> bool {
+        let acts = before_contact(other).map(|fact| &fact.source).filter(|_| self.is_of_headline(other));
+        let named: Vec<(usize, usize)> = [&other.kind.source].into_iter().chain(acts).filter_map(span).collect();
+        let near = |(start, end): (usize, usize)| {
+            named.iter().any(|(first, last)| *first <= end + NAMED_WITHIN && (*first >= start || *last > start))
+        };
+        self.reactions().any(near)
+    }
+
+    /// Whether somebody is named before all that the ego is told to have done.
+    fn is_of_headline(&self, other: &Other) -> bool {
+        let begins = self.account.sv.acts.iter().filter_map(|fact| span(&fact.source)).map(|(start, _)| start).min();
+        span(&other.kind.source).zip(begins).is_some_and(|((named, _), begins)| named < begins)
+    }
+
+    /// Whether somebody on foot, or an animal, is whom the ego slowed or stood for.
+    pub(super) fn is_met(&self, other: &Other) -> bool {
+        let Some((named, end)) = span(&other.kind.source) else { return false };
+        let before = self.reactions().any(|(start, _)| (end..end + NAMED_BEFORE).contains(&start));
+        let turns = self.account.sv.acts.iter().filter(|fact| fact.act == Act::Turn && !fact.after_contact);
+        let turns = turns
+            .filter_map(|fact| span(&fact.source))
+            .any(|(start, end)| (start..end + NAMED_BEFORE).contains(&named));
+        let reacts = self.reactions().next().is_some();
+        let crosses =
+            |fact: &ActFact| matches!(fact.act, Act::Cross | Act::Enter | Act::RunRed | Act::PullOut | Act::UTurn);
+        self.is_near(other) || reacts && before_contact(other).any(crosses) || before || turns
+    }
+
+    /// Whether who stood drove on; and whether it did so before the ego did.
+    pub(super) fn drives_on(&self, other: &Other) -> Option<bool> {
+        let stood = |fact: &&ActFact| matches!(fact.act, Act::Stop | Act::Hold) && !fact.after_contact;
+        let since = self.account.sv.acts.iter().chain(&other.acts).filter(stood).map(|fact| fact.step).min()?;
+        let drives = |fact: &&ActFact| {
+            fact.step > since && matches!(fact.act, Act::SetOff | Act::Follow | Act::Accelerate | Act::Leave)
+        };
+        let at = before_contact(other).find(drives)?.step;
+        let moves = |fact: &&ActFact| {
+            let moves = matches!(fact.act, Act::SetOff | Act::Follow | Act::Enter | Act::LaneChange | Act::Turn);
+            moves && fact.step > since && !fact.after_contact
+        };
+        Some(self.account.sv.acts.iter().find(moves).is_some_and(|fact| at < fact.step))
+    }
+
+    /// Whether somebody stands, or comes to a stop, behind that the ego set off, and the ego slows or stops again.
+    pub(super) fn stands_again(&self, other: &Other) -> bool {
+        let ego = || self.account.sv.acts.iter().filter(|fact| !fact.after_contact);
+        let Some(off) = ego().filter(|fact| fact.act == Act::SetOff).map(|fact| fact.step).max() else { return false };
+        let slows = ego().any(|fact| fact.step > off && matches!(fact.act, Act::Slow | Act::Stop));
+        let last = before_contact(other).max_by_key(|fact| fact.step);
+        slows && last.is_some_and(|fact| fact.step > off && matches!(fact.act, Act::Hold | Act::Stop))
+    }
+
+    pub(super) fn role(&self, told: &Told, other: &Other) -> Option<Role> {
+        // Who throws the partner is drawn there; and who comes afterwards is not.
+        let later = !other.acts.is_empty() && other.acts.iter().all(|fact| fact.after_contact) && !self.is_near(other);
+        if other.touched_partner || later {
+            return None;
+        }
+        match other.kind.value.group() {
+            KindGroup::OnFoot | KindGroup::Cyclist => self.is_met(other).then_some(Role::Walker),
+            KindGroup::Animal => self.is_met(other).then_some(Role::Animal),
+            KindGroup::Car | KindGroup::Truck | KindGroup::Motorcycle => self.vehicle(told, other),
+            _ => None,
+        }
+    }
+
+    /// Whether the partner goes round somebody who stands: it comes over from the opposite side, or passes where the ego is at the kerb.
+    fn is_passed(&self, told: &Told) -> bool {
+        let passes = |fact: &ActFact| matches!(fact.act, Act::Pass | Act::LaneChange) && !fact.after_contact;
+        let at_kerb = told.sv.state == ContactState::Parked
+            || told.sv.came_to_park
+            || told.sv.movement == Some(Movement::EnteringTraffic);
+        told.comes_over || at_kerb && self.account.partner.as_ref().is_some_and(|party| party.acts.iter().any(passes))
+    }
+
+    /// Whether the partner is told to pass between the ego and somebody: who is named right behind that; where nobody is, and the partner
+    /// goes the ego's way, anybody.
+    pub(super) fn is_between(&self, told: &Told, other: &Other) -> bool {
+        let between =
+            |fact: &&ActFact| fact.act == Act::Pass && !fact.after_contact && text(&fact.source).contains("between");
+        let acts = self.account.partner.iter().flat_map(|partner| &partner.acts).filter(between);
+        let ends: Vec<usize> = acts.filter_map(|fact| Some(span(&fact.source)?.1)).collect();
+        let named = |other: &Other| {
+            let behind = |(start, _)| ends.iter().any(|end| (*end..=end + PASSES_WITHIN).contains(&start));
+            span(&other.kind.source).is_some_and(behind)
+        };
+        match told.origin {
+            Origin::Behind | Origin::Beside { .. } if !self.account.others.iter().any(named) => !ends.is_empty(),
+            Origin::Behind | Origin::Beside { .. } | Origin::Opposite => named(other),
+            _ => false,
+        }
+    }
+
+    /// Whether somebody is told to drive, and to do nothing else.
+    fn only_drives(&self, other: &Other) -> bool {
+        before_contact(other).all(|fact| matches!(fact.act, Act::Follow | Act::Enter | Act::SetOff | Act::Slow))
+    }
+
+    /// Whether somebody who drives in the next lane has room there, beside an ego that keeps its own.
+    fn keeps_abreast(&self, told: &Told, place: Option<Origin>) -> bool {
+        let Some(Origin::Beside { side }) = place else { return false };
+        let free = told.comes_from_side() != Some(side) && told.origin != Origin::Beside { side };
+        // What came off it rolls out from beside it.
+        let free = free || told.is_sliding();
+        let drives = matches!(told.sv.state, ContactState::Moving | ContactState::SettingOff);
+        free && drives && is_straight(told)
+    }
+
+    /// The step at which the ego is told to pass somebody.
+    fn passes_at(&self, other: &Other) -> Option<u32> {
+        let passes = |fact: &&ActFact| fact.act == Act::Pass && !fact.after_contact && !fact.begun;
+        let acts = before_contact(other).map(|fact| &fact.source);
+        let named: Vec<usize> =
+            [&other.kind.source].into_iter().chain(acts).filter_map(|source| Some(span(source)?.0)).collect();
+        let of = |fact: &&ActFact| {
+            let within =
+                |(start, end): (usize, usize)| named.iter().any(|at| (start..=end + PASSES_WITHIN).contains(at));
+            span(&fact.source).is_some_and(within)
+        };
+        self.account.sv.acts.iter().filter(passes).find(of).map(|fact| fact.step)
+    }
+
+    /// Whether the ego has passed somebody, and is told to have come back into its lane then.
+    pub(super) fn is_back(&self, other: &Other) -> bool {
+        let Some(passed) = self.passes_at(other) else { return false };
+        let changes = |fact: &&ActFact| fact.act == Act::LaneChange && !fact.after_contact && !fact.begun;
+        let changes: Vec<&ActFact> = self.account.sv.acts.iter().filter(changes).collect();
+        match changes.as_slice() {
+            [.., last] if last.step > passed => true,
+            // "It merged to the right, and merged back to the left after passing the truck."
+            [.., one, last] => one.side.is_some() && last.side == one.side.map(LeftRight::other),
+            _ => false,
+        }
+    }
+
+    /// Whether somebody was about to change lanes.
+    fn merges_yet(&self, other: &Other) -> bool {
+        other.acts.iter().any(|fact| fact.act == Act::LaneChange && fact.begun && !fact.after_contact)
+    }
+
+    /// Whether the ego moves over in its lane, or out of it, away from the side from which somebody comes.
+    fn makes_room(&self, told: &Told, other: &Other) -> bool {
+        let away = told.sv.aside.map(LeftRight::other).filter(|_| told.sv.turning == Turning::No);
+        away.is_some() && away == self.came_from(other)
+    }
+
+    /// From which side somebody changes lanes.
+    fn came_from(&self, other: &Other) -> Option<LeftRight> {
+        let changes =
+            before_contact(other).find(|fact| matches!(fact.act, Act::LaneChange | Act::PullOut | Act::Swerve));
+        match other.place.as_ref().map(|fact| fact.value) {
+            Some(Origin::Beside { side }) => Some(side),
+            _ => changes.and_then(|fact| fact.side).map(LeftRight::other),
+        }
+    }
+
+    fn vehicle(&self, told: &Told, other: &Other) -> Option<Role> {
+        let words = text(&other.kind.source);
+        let said = |of: &[&str]| of.iter().any(|word| words.contains(word));
+        let did = |acts: &[Act]| before_contact(other).any(|fact| acts.contains(&fact.act));
+        let place = other.place.as_ref().map(|fact| fact.value);
+        // Of traffic without a deed it is told because the ego waits for it.
+        let acts_not = before_contact(other).next().is_none();
+        let near = self.is_near(other);
+        let reacts = self.reactions().next().is_some();
+        let because = |reason: StandReason| told.reasons.contains(&reason);
+        let stands = did(&[Act::Hold, Act::Stop, Act::Park]) && !did(&[Act::SetOff, Act::Follow, Act::Reverse]);
+        if stands && !other.several && !near && self.is_passed(told) {
+            return Some(Role::Passed);
+        }
+        if stands && !other.several && self.is_between(told, other) {
+            return Some(Role::Beside);
+        }
+        if is_parked(other) && !did(&[Act::PullOut, Act::SetOff, Act::Follow, Act::Reverse]) {
+            let double = said(&["double"]) || before_contact(other).any(|fact| text(&fact.source).contains("double"));
+            let waits =
+                because(StandReason::BlockedPath) || because(StandReason::LeadVehicle) || place == Some(Origin::Ahead);
+            let blocks = near && (waits || double);
+            return match (other.several, goes_round(told) && told.thing.is_none_or(|thing| thing != other.kind.value)) {
+                (true, _) => Some(Role::Kerb),
+                (false, true) => Some(Role::Obstacle),
+                (false, false) if blocks => Some(Role::Lead),
+                (false, false) => (!did(&[Act::Park])).then_some(Role::Kerb),
+            };
+        }
+        if stands && !other.several && self.is_back(other) && told.sv_aside().is_some() {
+            return Some(Role::Obstacle);
+        }
+        // In the next lane, whether or not the ego slows as it goes by.
+        let beside = matches!(place, Some(Origin::Beside { .. })) || place.is_none() && self.passes_at(other).is_some();
+        if stands
+            && beside
+            && told.sv_aside().is_none()
+            && !self.is_back(other)
+            && !did(&[Act::LaneChange, Act::Enter, Act::PullOut, Act::Drift])
+        {
+            return Some(Role::Beside);
+        }
+        let drives = did(&[Act::Follow, Act::Enter, Act::SetOff]) && self.only_drives(other);
+        if drives && self.keeps_abreast(told, place) {
+            return Some(Role::Abreast);
+        }
+        if did(&[Act::Reverse]) && matches!(place, Some(Origin::Beside { .. })) && (near || reacts) {
+            return Some(Role::Backer);
+        }
+        if place == Some(Origin::Opposite) || said(&["oncoming", "opposing"]) {
+            let only_passes = !did(&[Act::Hold, Act::Stop, Act::Turn, Act::LaneChange, Act::Park, Act::Reverse]);
+            // Of who turns across it, it is told only because that waits for it.
+            let waits = near || other.several && (told.sv.turning == Turning::Left || acts_not);
+            return (only_passes && (waits || did(&[Act::Follow]))).then_some(Role::Oncoming);
+        }
+        let queue = because(StandReason::Queue) || because(StandReason::LeadVehicle);
+        let ahead = place == Some(Origin::Ahead) || said(&["lead", "preceding"]);
+        let beside = matches!(place, Some(Origin::Beside { .. }));
+        let across = matches!(place, Some(Origin::Cross { .. }));
+        let crosses = said(&["cross", "bound traffic", "approaching traffic"]) || beside || across;
+        let turns = told.sv.turning != Turning::No || because(StandReason::StopSign);
+        let passes = turns && (because(StandReason::Yield) || did(&[Act::Follow]));
+        // Crossing traffic that has not cleared the junction.
+        let held = other.several && crosses && did(&[Act::Hold]) && told.sv.state == ContactState::Stopped;
+        if held && (told.place == PlaceKind::Intersection || told.is_controlled()) && !beside && !queue {
+            return Some(Role::Blocker);
+        }
+        let for_turn =
+            told.sv.turning != Turning::No && said(&["cross"]) || across && (acts_not || did(&[Act::Follow]));
+        let for_turn = for_turn && !because(StandReason::BlockedJunction);
+        let waits = near || other.several && for_turn;
+        if waits && !ahead && !queue && other.several && (crosses || passes || because(StandReason::Yield)) {
+            let turns_left =
+                told.sv.turning == Turning::Left && !because(StandReason::StopSign) && !said(&["cross"]) && !across;
+            let junction = told.place == PlaceKind::Intersection || turns || said(&["cross"]) || across;
+            return junction.then_some(if turns_left { Role::Oncoming } else { Role::Crosser });
+        }
+        let leaves = did(&[Act::LaneChange, Act::Enter, Act::PullOut, Act::Cross, Act::Reverse, Act::Pass, Act::Drift]);
+        let pulls_out = did(&[Act::PullOut]) && !told.comes_from_aside();
+        let came_over = did(&[Act::LaneChange])
+            || pulls_out
+            || beside && did(&[Act::Swerve, Act::SetOff])
+            || ahead && near && did(&[Act::Drift])
+            || self.merges_yet(other);
+        let merges = came_over && !did(&[Act::Hold, Act::Stop, Act::Turn, Act::Cross]);
+        let keeps_lane = is_straight(told) || self.makes_room(told, other);
+        if merges
+            && (near || reacts || self.makes_room(told, other))
+            && !other.several
+            && place != Some(Origin::Behind)
+            && keeps_lane
+        {
+            return Some(Role::Merger);
+        }
+        let junction = told.place == PlaceKind::Intersection || told.is_controlled();
+        let waits = near && told.sv.state == ContactState::Stopped && other.several;
+        if waits && because(StandReason::BlockedJunction) {
+            return Some(Role::Beyond);
+        }
+        let waits = waits && !queue;
+        // Who drives elsewhere does not stand ahead.
+        let elsewhere = did(&[Act::Follow]) && !did(&[Act::Hold, Act::Stop]) && !ahead && !queue;
+        if waits && junction && elsewhere {
+            return Some(Role::Blocker);
+        }
+        if !(near && !beside || ahead && reacts) || leaves || elsewhere || place == Some(Origin::Behind) {
+            return None;
+        }
+        // Who stands somewhere, and is not told to have gone, stands yet when the ego drives on: not in its lane.
+        let only_holds = !acts_not && before_contact(other).all(|fact| matches!(fact.act, Act::Hold | Act::Park));
+        if only_holds && place.is_none() && sets_off(told) && is_straight(told) && !queue && !told.is_controlled() {
+            return None;
+        }
+        // At green nobody stands before the line: who stops ahead does so behind the junction.
+        let drawn = matches!(told.place, PlaceKind::Street | PlaceKind::Intersection);
+        let behind = drawn && !matches!(told.origin, Origin::Cross { .. });
+        let green = told.sv.control.is_some_and(|said| said.state == Some(SignalState::Green));
+        if green
+            && other.several
+            && behind
+            && told.sv.state == ContactState::Stopped
+            && !queue
+            && told.sv.turning == Turning::No
+        {
+            return Some(Role::Beyond);
+        }
+        let slows = said(&["slow"]) || did(&[Act::Slow, Act::Turn, Act::Park, Act::Stop]) && !did(&[Act::Hold]);
+        let moves = matches!(told.sv.state, ContactState::Moving) && !sets_off(told);
+        Some(if slows && moves { Role::Slower } else { Role::Lead })
+    }
+
+    /// On which side of the ego somebody is, or from which it comes.
+    pub(super) fn side(&self, role: Role, told: &Told, other: &Other) -> Option<LeftRight> {
+        let passes = self.account.sv.acts.iter().find(|fact| fact.act == Act::Pass && !fact.after_contact);
+        let passed = passes.and_then(|fact| fact.side).or(told.sv.aside).map(LeftRight::other);
+        match other.place.as_ref().map(|fact| fact.value) {
+            Some(Origin::Beside { side } | Origin::Cross { side }) => Some(side),
+            // One that is parked is where the partner comes from, or on the right.
+            _ if role == Role::Kerb && !other.several => match told.origin {
+                Origin::Parked { side } | Origin::Driveway { side } | Origin::Sidewalk { side } => side,
+                _ => None,
+            }
+            .or(Some(LeftRight::Right)),
+            // Who changes to its right comes from the left.
+            // From the lane beside it of which is told.
+            _ if role == Role::Merger => self.came_from(other).or(match told.origin {
+                Origin::Beside { side } => Some(side),
+                _ => None,
+            }),
+            _ if role == Role::Obstacle && self.is_back(other) => None,
+            // On the side where the partner touches the ego.
+            _ if role == Role::Beside && self.is_between(told, other) => {
+                side_of(&told.sv.zones).map(|side| if side > 0.0 { LeftRight::Left } else { LeftRight::Right })
+            }
+            _ => passed.filter(|_| matches!(role, Role::Obstacle | Role::Beside)),
+        }
+    }
+}

@@ -1,0 +1,190 @@
+//! Partners that are things: what they are, how large, how they lie, and whether they move by themselves.
+
+use crate::told::lies::Lies;
+use crate::told::side::{Side, Turning};
+use recrash_model::account::{
+    Account, Act, ActFact, ContactState, Fact, Kind, KindGroup, Origin, Party, PlaceKind, RoadFeature, Source, Striker,
+    told,
+};
+use recrash_model::scenario::Size;
+use recrash_model::template::Movement;
+use recrash_model::zones::ContactZone;
+
+impl Lies {
+    /// What the words for it tell.
+    pub(super) fn of(thing: &Party, sv: &Side, place: PlaceKind) -> Option<Self> {
+        let any =
+            |words: &[&str]| words_of(&thing.kind).is_some_and(|text| words.iter().any(|word| text.contains(word)));
+        let turns_in = matches!(sv.turning, Turning::Left | Turning::Right)
+            || matches!(place, PlaceKind::ParkingLot | PlaceKind::Garage | PlaceKind::Driveway);
+        match told(&thing.kind)? {
+            Kind::Curb | Kind::Pothole if any(&["speed bump", "speed hump", "speed table", "gate track"]) => {
+                Some(Self::Bump)
+            }
+            Kind::Debris if any(&["spikes"]) => Some(Self::Bump),
+            Kind::Pothole if any(&["water meter"]) => Some(Self::Hole),
+            Kind::Pothole if any(&["water", "flood", "wet cement"]) => Some(Self::Water),
+            Kind::Pothole if sv.only_above_or_below && turns_in && !any(&["hole", "removed"]) => Some(Self::Edge),
+            Kind::Pothole => Some(Self::Hole),
+            _ => None,
+        }
+    }
+}
+
+/// Lengths and widths of things that are longer or shorter than others of their kind, by the words for them; usual ones, assumed. [m]
+const SIZES_M: [(&str, f64, f64); 21] = [
+    ("solar panel", 1.6, 1.0),
+    ("planter", 1.0, 1.0),
+    ("bollard", 0.3, 0.3),
+    ("pillar", 0.6, 0.6),
+    ("column", 0.6, 0.6),
+    ("utility box", 0.8, 0.6),
+    ("electrical box", 0.8, 0.6),
+    ("bench", 1.5, 0.6),
+    ("cement bumper", 1.8, 0.3),
+    ("door frame", 0.3, 0.3),
+    ("fixed", 1.0, 1.0),
+    ("bicycle", 1.7, 0.6),
+    ("mattress", 1.9, 1.4),
+    ("ladder", 2.5, 0.5),
+    ("pallet", 1.2, 1.0),
+    ("couch", 2.0, 0.9),
+    ("sofa", 2.0, 0.9),
+    ("dumpster", 1.8, 1.2),
+    ("plywood", 2.4, 1.2),
+    ("portable basketball", 1.2, 1.0),
+    ("ball", 0.3, 0.3),
+];
+
+/// The size of a small thing, where the words for it tell more than its kind.
+pub(super) fn size(thing: &Party) -> Option<Size> {
+    let kind = told(&thing.kind)?;
+    let small = matches!(kind, Kind::Debris | Kind::Object | Kind::Scooter | Kind::Cargo | Kind::Wall | Kind::Pole);
+    let text = words_of(&thing.kind).filter(|_| small)?;
+    let found = SIZES_M.iter().find(|(word, ..)| text.contains(word));
+    found.map(|(_, length_m, width_m)| Size { length_m: *length_m, width_m: *width_m })
+}
+
+/// The words in which a fact stands.
+fn words_of<T>(fact: &Option<Fact<T>>) -> Option<String> {
+    match &fact.as_ref()?.source {
+        Source::Words { text, .. } => Some(text.to_lowercase()),
+        _ => None,
+    }
+}
+
+/// The partner, with what is told of a thing beside its own acts: "rolling into its lane" stands with from where it came.
+pub(super) fn partner(account: &Account) -> Option<Party> {
+    let mut partner = account.partner.clone()?;
+    let moves = ["roll", "slid", "blow", "blew", "tumbl", "drift"];
+    let came = words_of(&account.came_from).is_some_and(|text| moves.iter().any(|stem| text.contains(stem)));
+    let thing = told(&partner.kind).is_some_and(is_thing);
+    if thing && came && partner.state.is_none() && !slides(&partner) {
+        let source = account.came_from.as_ref()?.source.clone();
+        let rolls = ActFact {
+            act: Act::Roll,
+            side: None,
+            step: 0,
+            after_contact: false,
+            begun: false,
+            done: false,
+            after_other: None,
+            manner: None,
+            source,
+        };
+        partner.acts.push(rolls);
+    }
+    Some(partner)
+}
+
+fn is_thing(kind: Kind) -> bool {
+    kind.group() == KindGroup::Object
+}
+
+/// Whether the ego is told to have changed lanes and driven on before it came to a thing.
+pub(super) fn changed_lanes_before(account: &Account) -> bool {
+    let before = || account.sv.acts.iter().filter(|fact| !fact.after_contact && !fact.begun);
+    let last = |act: Act| before().filter(|fact| fact.act == act).map(|fact| fact.step).max();
+    let thing = account.partner.as_ref().and_then(|partner| told(&partner.kind)).is_some_and(is_thing);
+    let changed =
+        last(Act::LaneChange).filter(|_| thing && told(&account.sv.movement) == Some(Movement::ChangingLanes));
+    changed.is_some_and(|changed| last(Act::Follow) > Some(changed))
+}
+
+/// Whether only the roof was touched: what did it hangs above the road.
+pub(super) fn is_overhead(sv: &Party) -> bool {
+    let zones = sv.zone_values();
+    !zones.is_empty() && zones.iter().all(|zone| *zone == ContactZone::Top)
+}
+
+/// Whether a thing closes an entrance, or lies across it.
+pub(super) fn is_at_entrance(thing: &Party) -> bool {
+    let lies =
+        words_of(&thing.kind).is_some_and(|text| ["spikes", "gate track"].iter().any(|word| text.contains(word)));
+    lies || matches!(told(&thing.kind), Some(Kind::Chain | Kind::Gate | Kind::Barrier))
+}
+
+/// Whether the road is told to be a slope.
+pub(super) fn is_on_slope(account: &Account) -> bool {
+    account.place.features.iter().any(|fact| fact.value == RoadFeature::Slope)
+}
+
+/// Whether a thing is told to be fixed, and no more.
+pub(super) fn is_fixed(thing: &Party) -> bool {
+    told(&thing.kind) == Some(Kind::Object) && words_of(&thing.kind).is_some_and(|text| text.contains("fixed"))
+}
+
+/// Whether it is told of a thing that it came into the way. What has fallen lies there.
+pub(super) fn slides(thing: &Party) -> bool {
+    let acts = [Act::Roll, Act::Pushed, Act::Enter, Act::Cross, Act::Swerve, Act::Drift, Act::LaneChange];
+    acts.into_iter().any(|act| thing.did(act))
+}
+
+/// Whether it is told of a gate or a barrier that it swung, came down, was opened or struck as the two met.
+pub(super) fn swings(kind: Kind, thing: &Party, striker: Option<Striker>) -> bool {
+    let acts = [Act::OpenDoor, Act::Fall, Act::SetOff, Act::Turn, Act::Roll, Act::Swerve, Act::Drift, Act::Enter];
+    let moves = striker == Some(Striker::Cp) || told(&thing.state).is_some_and(|state| !state.stands());
+    matches!(kind, Kind::Gate | Kind::Barrier) && (moves || acts.into_iter().any(|act| thing.did(act)))
+}
+
+/// Size of the post of a gate that swings. [m]
+pub(super) const POST: Size = Size { length_m: 0.3, width_m: 0.3 };
+
+/// What falls off the vehicle ahead does so at no higher speed: no scenario has a thing that is faster. [m/s]
+const DROPPED_MOST_MPS: f64 = 15.0;
+
+/// Who is named no farther behind the words that a thing came from somewhere is where it came from. [byte]
+const FROM_WITHIN: usize = 16;
+
+/// Which of the others a thing fell off, or came out from under, ahead of an ego that follows it: one whose place is told with that, or who
+/// is named right behind it. What had fallen before lies there.
+pub(super) fn dropped_by(account: &Account, partner: &Party, sv: &Side, place: PlaceKind) -> Option<usize> {
+    let drops = matches!(told(&partner.kind)?, Kind::Debris | Kind::LooseWheel | Kind::Cargo | Kind::Object);
+    let along = sv.state == ContactState::Moving && sv.turning == Turning::No && sv.aside.is_none();
+    let slow = sv.impact_mps.map_or(place != PlaceKind::Highway, |mps| mps <= DROPPED_MOST_MPS);
+    if !drops || !along || !slow || told(&account.came_from) != Some(Origin::Ahead) {
+        return None;
+    }
+    let words = |source: &Source| match source {
+        Source::Words { start, end, text } => Some((*start, *end, text.to_lowercase())),
+        _ => None,
+    };
+    let falls = |text: &str| ["fell", "came off", "from under"].iter().any(|word| text.contains(word));
+    let acts = partner.acts.iter().filter(|fact| !fact.after_contact);
+    let said: Vec<_> = acts.filter_map(|fact| Some((fact.act, words(&fact.source)?))).collect();
+    let fell = said.iter().any(|(act, (.., text))| *act == Act::Fall && falls(text));
+    let from: Vec<usize> = said
+        .iter()
+        .filter(|(act, (.., text))| *act == Act::Enter && text.ends_with("from"))
+        .map(|(_, (_, end, _))| *end)
+        .collect();
+    account.others.iter().position(|other| {
+        let drives = other.kind.value.group() != KindGroup::Object && !other.several && !other.touched_partner;
+        let place = other.place.as_ref().filter(|fact| fact.value == Origin::Ahead);
+        let with_place = place.is_some_and(|fact| fell || words(&fact.source).is_some_and(|(.., text)| falls(&text)));
+        let named = words(&other.kind.source)
+            .is_some_and(|(start, ..)| from.iter().any(|end| (*end..=end + FROM_WITHIN).contains(&start)));
+        let named = named && other.place.as_ref().is_none_or(|fact| fact.value == Origin::Ahead);
+        drives && (with_place || named)
+    })
+}

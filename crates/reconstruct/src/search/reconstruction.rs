@@ -1,0 +1,34 @@
+//! A crash, reconstructed.
+
+use recrash_model::metrics::{Answer, Check, CheckKind, CheckResult, Verdict};
+use recrash_model::rollout::Rollout;
+use recrash_model::scenario::ScenarioDraft;
+
+/// A crash, reconstructed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Reconstruction {
+    /// The scenario, with the recorded driver.
+    pub draft: ScenarioDraft,
+    /// What it shows.
+    pub rollout: Rollout,
+    /// Every told fact, and whether it is shown.
+    pub verdict: Verdict,
+    /// What nobody told, and was chosen.
+    pub assumed: Vec<String>,
+}
+
+impl Reconstruction {
+    /// Whether no told fact is shown otherwise; some may be beyond what can be shown yet.
+    pub fn is_true(&self) -> bool {
+        self.verdict.faithful() != Answer::No
+    }
+
+    /// The first told fact without which this is not the crash: one that is shown otherwise, or something that the two are told to have
+    /// done and that is not to be seen. Nothing where the crash is told; others, or why the ego stood, may still not be drawn.
+    pub fn missed(&self) -> Option<&Check> {
+        use CheckKind::{CpActs, CpMovement, PassedOn, SvActs, SvMovement};
+        let is_deed = |kind| matches!(kind, SvMovement | CpMovement | SvActs | CpActs | PassedOn);
+        let open = |check: &Check| check.result == CheckResult::CannotBeShown && is_deed(check.kind);
+        self.verdict.failures().next().or_else(|| self.verdict.checks.iter().find(|check| open(check)))
+    }
+}

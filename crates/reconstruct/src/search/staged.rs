@@ -1,0 +1,66 @@
+//! The first telling of a crash that shows every told fact, else the one that shows most.
+
+use crate::search::best::{Found, acts_left_open, is_of_acts, left_open, searched};
+use crate::search::reconstruction::Reconstruction;
+use crate::told::crash::Told;
+use recrash_model::account::{Account, Untold};
+use recrash_model::metrics::CheckKind;
+
+/// So many are run in all.
+const MOST_RUNS: usize = 1000;
+
+/// And where the same is tried in another way.
+const AGAIN_RUNS: usize = 100;
+
+/// What cannot be shown in all its steps is shown in the last of them; and where the partner cannot come out of the middle of its lane, it
+/// comes straight to where it touches. What the two did is brought into the told order where it is not.
+pub(crate) fn staged(told: Told, account: &Account) -> Result<Reconstruction, Untold> {
+    let fewer = told.plainly().into_iter().chain(told.in_fewer_steps());
+    let others: Vec<Told> = fewer.chain([told.coming_straight()]).collect();
+    let made = in_order(told, account, MOST_RUNS);
+    let is_true = |made: &Result<Found, Untold>| made.as_ref().is_ok_and(|found| found.made.is_true());
+    let other = match is_true(&made) {
+        true => None,
+        false => others.into_iter().map(|told| in_order(told, account, AGAIN_RUNS)).find(is_true),
+    };
+    other.unwrap_or(made).map(|found| found.made)
+}
+
+/// The same, of which one is taken at another time that shows more of what the two did, and no less else.
+fn in_order(told: Told, account: &Account, most_runs: usize) -> Result<Found, Untold> {
+    let (told, mut best) = near_or_far(told, account, most_runs)?;
+    if !best.made.is_true() {
+        return Ok(best);
+    }
+    for (told, helps) in told.in_other_times() {
+        let open = [CheckKind::SvActs, CheckKind::CpActs]
+            .map(|kind| best.made.verdict.checks.iter().any(|check| check.kind == kind && is_of_acts(check)));
+        if !(open[0] && helps[0] || open[1] && helps[1]) {
+            continue;
+        }
+        let other = searched(told, account, AGAIN_RUNS)
+            .ok()
+            .filter(|other| other.made.is_true() && other.strays <= best.strays);
+        let open = |found: &Found| (acts_left_open(&found.made), left_open(&found.made));
+        if let Some(other) = other.filter(|other| open(other).0 < open(&best).0 && open(other).1 <= open(&best).1) {
+            best = other;
+        }
+    }
+    Ok(best)
+}
+
+/// Who was behind the ego in a queue stands close to it; farther off where nothing true is found with that.
+fn near_or_far(told: Told, account: &Account, most_runs: usize) -> Result<(Told, Found), Untold> {
+    let near = searched(told.clone(), account, most_runs);
+    let good = |found: &Result<Found, Untold>| {
+        found.as_ref().is_ok_and(|found| found.made.is_true() && !found.strays && acts_left_open(&found.made) == 0)
+    };
+    if good(&near) {
+        return near.map(|found| (told, found));
+    }
+    let afar = told.afar().map(|told| (searched(told.clone(), account, AGAIN_RUNS), told));
+    match afar.filter(|(far, _)| good(far) || !near.as_ref().is_ok_and(|near| near.made.is_true())) {
+        Some((far, told)) => far.map(|found| (told, found)),
+        None => near.map(|found| (told, found)),
+    }
+}

@@ -1,0 +1,179 @@
+//! An account, in the terms of a staging.
+
+use crate::told::choices::Choices;
+use crate::told::layout::{Counted, Layout};
+use crate::told::lies::Lies;
+use crate::told::others::{Extra, Thrower};
+use crate::told::rig::Rig;
+use crate::told::side::Side;
+use recrash_model::account::{
+    ContactState, ControlDevice, CrashType, Kind, LeftRight, Origin, PlaceKind, StandReason, Striker,
+};
+use recrash_model::metrics::CheckKind;
+use recrash_model::narrative::FirstMover;
+use recrash_model::template::Movement;
+
+/// An account, in the terms of a staging.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Told {
+    pub(crate) crash_type: CrashType,
+    pub(crate) place: PlaceKind,
+    pub(crate) sv: Side,
+    pub(crate) cp: Side,
+    /// The partner is a thing that stands or lies.
+    pub(crate) thing: Option<Kind>,
+    /// The partner is a gate that swung as they met.
+    pub(crate) gate_swings: bool,
+    /// How the partner lies that the ego drives over, where told.
+    pub(crate) lies: Option<Lies>,
+    /// Which of the others the partner fell off, or came out from under, ahead of the ego.
+    pub(crate) dropped: Option<usize>,
+    /// The partner lies, hangs or stands across the entrance that the ego turned into.
+    pub(crate) at_entrance: bool,
+    /// The side of the road at whose edge the partner stands.
+    pub(crate) edge: Option<LeftRight>,
+    /// The partner is told to be parked at an angle to the road.
+    pub(crate) diagonal: bool,
+    /// The ego had changed lanes, and driven on, before it came to a thing.
+    pub(crate) lane_changed: bool,
+    /// The partner is on foot, or an animal, and is told to have come across.
+    pub(crate) walks_across: bool,
+    /// The partner is told to have rolled, slid or been pushed.
+    pub(crate) slides: bool,
+    pub(crate) origin: Origin,
+    pub(crate) origin_told: bool,
+    /// The partner came from the kerb behind the ego, round it.
+    pub(crate) comes_round: bool,
+    /// An oncoming partner left its own side.
+    pub(crate) comes_over: bool,
+    pub(crate) order: Option<FirstMover>,
+    /// The kind of the partner whose trailer is told to have touched.
+    pub(crate) trailer_of: Option<Kind>,
+    /// Who comes by with a trailer that touches is drawn as two, where that shows what is told; and what is drawn.
+    pub(crate) wanted_rig: Option<Rig>,
+    pub(crate) rig: Option<Rig>,
+    /// Somebody threw the partner at the subject vehicle; and who, where told.
+    pub(crate) pushed: bool,
+    pub(crate) pusher: Option<Kind>,
+    pub(crate) thrower: Option<Thrower>,
+    /// Who touched the partner first is told to stand: the partner ran into it.
+    pub(crate) pusher_stands: bool,
+    /// Who was pushed is told to have come along or slowed, and not to have stood.
+    pub(crate) pushed_rolling: bool,
+    /// So many of the others are told to have touched the partner first.
+    pub(crate) throwers: usize,
+    pub(crate) striker: Option<Striker>,
+    /// Lanes in the ego's direction.
+    pub(crate) lanes: Option<u8>,
+    /// What is told of the road and of places on it beside.
+    pub(crate) layout: Layout,
+    /// The road has one lane more in each direction than is usual.
+    pub(crate) more_lanes: bool,
+    /// The road is crossed by one on which somebody is who has no part in what the ego does.
+    pub(crate) crossed_near: bool,
+    /// A stop for all: there is a sign on every arm.
+    pub(crate) all_way: bool,
+    /// The ego's light turned green when it had set off and come to a stop again.
+    pub(crate) green_late: bool,
+    /// Why the ego stood.
+    pub(crate) reasons: Vec<StandReason>,
+    /// Others than the two.
+    pub(crate) others: usize,
+    /// Whose door took part.
+    pub(crate) door: Option<Striker>,
+    /// Posted speed, where told. [m/s]
+    pub(crate) posted_mps: Option<f64>,
+    /// Whom the ego stood for, by what is told.
+    pub(crate) wanted: Vec<Extra>,
+    /// Those of them in the scene.
+    pub(crate) extras: Vec<Extra>,
+    /// A partner from beside was ahead of the ego at first, or behind it, where told.
+    pub(crate) ahead: Option<bool>,
+    /// The ego stood already when the partner began what it did.
+    pub(crate) stood_before: bool,
+    /// The ego stopped for a partner beside it that had begun to come over.
+    pub(crate) gives_way_to_merge: bool,
+    /// The partner backs: it began to when the ego had set off.
+    pub(crate) backs_late: bool,
+    /// The partner backs: it began to before the ego stopped, or moved up to where it stands.
+    pub(crate) backs_early: bool,
+    /// Who of the two backed first, where both did.
+    pub(crate) backs_first: Option<Striker>,
+    /// The partner is told to have been behind an ego that stood and set off, and not to have come up to it.
+    pub(crate) queued: bool,
+    /// Who was behind the ego in a queue stands close to it.
+    pub(crate) close: bool,
+    /// What the two did to each other before is not staged; it is asked for.
+    pub(crate) plainly: bool,
+    /// The partner comes straight to where it touches, also beside its lane.
+    pub(crate) back_straight: bool,
+    /// When they touch. [s]
+    pub(crate) contact_s: f64,
+    pub(crate) choices: Choices,
+    pub(crate) assumed: Vec<String>,
+}
+
+impl Told {
+    /// The kinds of facts that are told and can be held against a rollout.
+    pub(crate) fn kinds(&self) -> Vec<CheckKind> {
+        let (sv, cp) = (&self.sv, &self.cp);
+        let moves = !(self.thing.is_some() && cp.state.stands());
+        let of = [
+            (CheckKind::Contact, true),
+            (CheckKind::Partner, true),
+            (CheckKind::SvZones, !sv.zones.is_empty() || sv.only_above_or_below),
+            (CheckKind::CpZones, !cp.zones.is_empty() && self.thing.is_none() || cp.only_above_or_below),
+            (CheckKind::SvState, sv.state_told),
+            (CheckKind::CpState, cp.state_told && moves || self.gate_swings),
+            (CheckKind::SvSpeed, sv.impact_mps.is_some()),
+            (CheckKind::CpSpeed, cp.impact_mps.is_some()),
+            (CheckKind::SvMovement, sv.movement.is_some()),
+            (CheckKind::CpMovement, cp.movement.is_some() && moves),
+            (CheckKind::SvActs, !sv.acts.is_empty()),
+            (CheckKind::CpActs, !cp.acts.is_empty() && moves),
+            (CheckKind::Approach, self.origin_told && moves || self.edge.is_some() || self.lies.is_some()),
+            (CheckKind::Order, self.order.is_some() && moves),
+            (CheckKind::PassedOn, self.pushed),
+            (CheckKind::SvLane, sv.lane.is_some()),
+            (CheckKind::CpLane, cp.lane.is_some() && moves),
+            (CheckKind::SvControl, sv.control.is_some()),
+            (CheckKind::CpControl, cp.control.is_some() && moves),
+            (CheckKind::Reason, sv.state.stands() && !self.reasons.is_empty()),
+            (CheckKind::Others, self.others > 0),
+            (CheckKind::Door, self.door.is_some()),
+        ];
+        of.into_iter().filter(|(_, told)| *told).map(|(kind, _)| kind).collect()
+    }
+
+    /// Whether the ego is told to have come into the junction.
+    pub(crate) fn enters(&self) -> bool {
+        !self.plainly && self.sv.enters()
+    }
+
+    /// Whether a signal or sign is told.
+    pub(crate) fn is_controlled(&self) -> bool {
+        self.sv.control.is_some() || self.cp.control.is_some()
+    }
+
+    /// Whether somebody throws the partner at the ego from behind: both stood in one lane, or came along it.
+    pub(crate) fn is_thrown(&self) -> bool {
+        let changes =
+            matches!(self.cp.movement, Some(Movement::ChangingLanes | Movement::Merging)) && self.cp.stood_first;
+        let behind = self.origin == Origin::Behind && self.cp.state != ContactState::Reversing;
+        self.pushed && behind && self.thing.is_none() && !changes
+    }
+
+    /// Which lane of its road one of the two is told to be in, counted from a side.
+    pub(crate) fn counted(&self, of_ego: bool) -> Option<Counted> {
+        if of_ego { self.layout.sv.counted } else { self.layout.cp.counted }
+    }
+
+    /// Whether the ego sets off at a signal with nobody ahead of it.
+    pub(crate) fn sets_off_first(&self) -> bool {
+        let at_signal = self.sv.control.is_some_and(|said| said.device == ControlDevice::Signal);
+        // Who waits behind it sets the pace where it does.
+        let waits = self.cp.stood_first || self.cp.state == ContactState::SettingOff || self.queued;
+        let once = self.sv.phases.len() <= 3 && !waits && !self.plainly;
+        self.sv.state == ContactState::SettingOff && at_signal && self.origin == Origin::Behind && once
+    }
+}

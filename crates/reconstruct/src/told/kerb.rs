@@ -1,0 +1,88 @@
+//! Questions to who stands at the kerb, comes from there, or backs out beside the road.
+
+use crate::told::crash::Told;
+use crate::told::phase::Phase;
+use crate::told::side::Turning;
+use recrash_model::account::{Act, ContactState, LaneWord, LeftRight, Origin, PlaceKind, StandReason};
+use recrash_model::template::Movement;
+
+impl Told {
+    /// Whether the ego stands at the kerb: it is parked, or is told to stand there or to have pulled over, and not to be in a lane.
+    pub(crate) fn is_at_kerb(&self) -> bool {
+        let stands = self.thing.is_some() && self.cp.state.stands();
+        let parked = self.sv.state == ContactState::Parked || self.sv.came_to_park;
+        let street = matches!(self.place, PlaceKind::Street | PlaceKind::Intersection | PlaceKind::Other);
+        street && (parked || self.stops_at_kerb()) && !stands && !self.is_in_lane(true)
+    }
+
+    /// Whether one of the two is told to stand in a driving lane: by a word for the lane, double-parked, or passed by who takes the opposite
+    /// side for it.
+    fn is_in_lane(&self, of_ego: bool) -> bool {
+        let (side, told) = if of_ego { (&self.sv, self.layout.sv) } else { (&self.cp, self.layout.cp) };
+        // Who lets passengers in or out, and is passed, is in the way, but where words for the kerb tell otherwise.
+        let boards = self.reasons.contains(&StandReason::PickupDropoff) && !told.at_kerb;
+        let passes = self.cp.lane == Some(LaneWord::Opposing) || boards && self.cp.movement == Some(Movement::Passing);
+        let passed = self.origin == Origin::Behind && passes && self.cp.state != ContactState::Reversing;
+        side.lane.is_some_and(|lane| lane != LaneWord::Curb) || told.in_lane || of_ego && passed
+    }
+
+    /// Whether one that stands is told to do so beside the lanes of a street: parked, or at the kerb.
+    pub(crate) fn stands_beside(&self, of_ego: bool) -> bool {
+        let (side, told) = if of_ego { (&self.sv, self.layout.sv) } else { (&self.cp, self.layout.cp) };
+        let street = matches!(self.place, PlaceKind::Street | PlaceKind::Intersection | PlaceKind::Other);
+        let parked = side.state == ContactState::Parked || side.came_to_park || side.state.stands() && told.at_kerb;
+        street && parked && !self.is_in_lane(of_ego) && (of_ego || self.thing.is_none())
+    }
+
+    /// Whether an ego that stood at the kerb has just left it.
+    pub(super) fn leaves_kerb(&self) -> bool {
+        let leaves = match self.sv.movement {
+            Some(Movement::ChangingLanes | Movement::Merging | Movement::LaneDeparture) => true,
+            Some(Movement::Straight | Movement::Passing) => self.sv.aside == Some(LeftRight::Left),
+            _ => false,
+        };
+        let left = self.sv.aside != Some(LeftRight::Right);
+        let moves =
+            self.sv.state == ContactState::SettingOff || self.sv.state == ContactState::Moving && self.sv.stood_first;
+        self.layout.sv.at_kerb && moves && leaves && left
+    }
+
+    /// Whether an ego that is not parked stopped at the kerb, and has not moved since.
+    fn stops_at_kerb(&self) -> bool {
+        let steps = self.sv.phases.first().is_none_or(|phase| *phase == Phase::Stands);
+        let stops = self.sv.state == ContactState::Stopped && steps && self.sv.turning == Turning::No;
+        let pulls_over =
+            matches!(self.sv.stopped_aside, Some(Act::PullOver | Act::Park)) && self.origin != Origin::Opposite;
+        let to_right = self.sv.aside != Some(LeftRight::Left);
+        stops && to_right && (self.layout.sv.at_kerb || pulls_over)
+    }
+
+    /// Whether an ego that is told to have stood at the kerb from the start, and not to be passed from behind, stands there all the time.
+    pub(crate) fn stays_at_kerb(&self) -> bool {
+        let stood = self.sv.state == ContactState::Stopped && self.sv.stands_from_start && self.sv.phases.is_empty();
+        stood && self.origin != Origin::Behind && self.is_at_kerb()
+    }
+
+    /// Whether the partner reverses out of a stall or a driveway.
+    pub(crate) fn backs_out(&self) -> bool {
+        let beside = matches!(self.origin, Origin::Stall { .. } | Origin::Driveway { .. });
+        beside && self.cp.state == ContactState::Reversing
+    }
+
+    /// From which side the partner comes across.
+    pub(crate) fn comes_from_side(&self) -> Option<LeftRight> {
+        match self.origin {
+            Origin::Cross { side } => Some(side),
+            Origin::Parked { side }
+            | Origin::Driveway { side }
+            | Origin::Stall { side }
+            | Origin::Sidewalk { side } => side,
+            _ => None,
+        }
+    }
+
+    /// Whether the partner comes out of a space beside the road.
+    pub(crate) fn comes_from_aside(&self) -> bool {
+        matches!(self.origin, Origin::Driveway { .. } | Origin::Stall { .. } | Origin::Parked { .. })
+    }
+}

@@ -1,0 +1,67 @@
+//! What the words tell of the road, and of the places on it, beside kinds of places and of lanes: which lane, counted from a side; which
+//! strip; who stands at the kerb; which door.
+
+use recrash_model::account::{LaneWord, LeftRight};
+use recrash_model::scenario::StripKind;
+
+/// A lane that is counted from a side of the road: "the third lane from the right".
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Counted {
+    pub(crate) from: LeftRight,
+    /// 1 is the outermost.
+    pub(crate) number: usize,
+}
+
+impl Counted {
+    /// Its number from the left, 0 is the leftmost, on a road with so many; nothing where that has fewer.
+    pub(crate) fn place(self, lanes: usize) -> Option<usize> {
+        match self.from {
+            LeftRight::Left => (self.number <= lanes).then(|| self.number - 1),
+            LeftRight::Right => lanes.checked_sub(self.number),
+        }
+    }
+
+    pub(crate) fn words(self) -> String {
+        let number = if self.number == 2 { "second" } else { "third" };
+        let side = if self.from == LeftRight::Left { "left" } else { "right" };
+        format!("the {number} lane from the {side}")
+    }
+}
+
+/// What is told so of one side.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(crate) struct Standing {
+    pub(crate) counted: Option<Counted>,
+    /// It stands at the kerb: "was stopped at the curb".
+    pub(crate) at_kerb: bool,
+    /// It is parked in a lane: "double parked", "parked in-lane".
+    pub(crate) in_lane: bool,
+}
+
+/// What is told so.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(crate) struct Layout {
+    pub(crate) sv: Standing,
+    pub(crate) cp: Standing,
+    /// The street is narrow; it is one-way.
+    pub(crate) narrow: bool,
+    pub(crate) one_way: bool,
+    /// A double yellow line divides it.
+    pub(crate) centre_line: bool,
+    /// A lane for left turns lies beside the ego's, which is told to be the left one of those that go on.
+    pub(crate) turn_lane: bool,
+    /// The ego goes to turn left, and has not begun to.
+    pub(crate) left_to_come: bool,
+    /// The door that took part is told to be a rear one, or a front one.
+    pub(crate) rear_door: Option<bool>,
+}
+
+/// The strip that a word for a lane tells; nothing where it tells a driving lane.
+pub(crate) const fn strip_of(word: LaneWord) -> Option<StripKind> {
+    match word {
+        LaneWord::Bike => Some(StripKind::Bike),
+        LaneWord::Shoulder => Some(StripKind::Shoulder),
+        LaneWord::Curb => Some(StripKind::Parking),
+        _ => None,
+    }
+}

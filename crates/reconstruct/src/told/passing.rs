@@ -1,0 +1,142 @@
+//! Questions to who passes, comes over, or comes towards the ego.
+
+use crate::told::crash::Told;
+use crate::told::doing::Doing;
+use crate::told::layout::strip_of;
+use crate::told::side::{Turning, is_on_foot};
+use crate::told::zones::side_of;
+use crate::usual::LANE_M;
+use recrash_model::account::{ContactState, LaneWord, LeftRight, Origin, PlaceKind};
+use recrash_model::template::Movement;
+
+impl Told {
+    /// Whether the partner comes along the ego's lane behind it and passes it.
+    pub(crate) fn passes_from_behind(&self) -> bool {
+        let own_lane = match (self.cp.lane, self.sv.lane) {
+            (Some(cp), sv) if strip_of(cp).is_some() => sv != Some(cp),
+            (Some(LaneWord::Opposing), _) => false,
+            (Some(cp), Some(sv)) => cp != sv,
+            _ => self.bus_lane().is_some(),
+        };
+        let own_lane = own_lane || self.leaves_to_who_passes();
+        // Who changes lanes to pass has not come back where it touches no front.
+        let pulls_out = self.cp.passes && !self.sv.zones.iter().any(|zone| zone.is_front());
+        self.origin == Origin::Behind
+            && (self.cp.movement == Some(Movement::Passing) || pulls_out || self.goes_out())
+            && matches!(self.cp.state, ContactState::Moving | ContactState::SettingOff)
+            && self.cp.turning == Turning::No
+            && !own_lane
+    }
+
+    /// On which side of the ego the partner passes it in the lane for buses, in which the ego is not.
+    pub(crate) fn bus_lane(&self) -> Option<LeftRight> {
+        let alone = self.cp.lane == Some(LaneWord::Bus) && self.sv.lane != Some(LaneWord::Bus);
+        let touched =
+            || side_of(&self.sv.zones).map(|side| if side > 0.0 { LeftRight::Left } else { LeftRight::Right });
+        self.cp.passes_on().or_else(touched).filter(|_| alone && self.origin == Origin::Behind)
+    }
+
+    /// Whether the ego changes into the lane in which the partner passes it, and meets it on that side.
+    fn leaves_to_who_passes(&self) -> bool {
+        let left_m = self.sv_aside().map_or(0.0, |aside| aside.from_t_m - aside.to_t_m);
+        let touched = side_of(&self.sv.zones).unwrap_or(0.0);
+        self.cp.movement == Some(Movement::Passing) && left_m * touched >= LANE_M
+    }
+
+    /// Whether the partner stood behind the ego and changes lanes to the side on which it touches it then: out of the ego's lane.
+    fn goes_out(&self) -> bool {
+        let to = self.cp.aside.or_else(|| self.cp.passes_on());
+        let touched = side_of(&self.sv.zones).map(|side| if side > 0.0 { LeftRight::Left } else { LeftRight::Right });
+        let changes = self.cp.movement == Some(Movement::ChangingLanes);
+        changes && self.cp.stood_first && to.is_some() && to == touched && !self.plainly
+    }
+
+    /// Whether the ego stopped for an oncoming partner that had begun to come over.
+    pub(crate) fn stops_for_who_comes_over(&self) -> bool {
+        !self.plainly && self.comes_over && self.sv.acts.iter().any(|doing| doing.answers(&self.cp.acts))
+    }
+
+    /// Whether the partner stood behind the ego, and comes out of its lane to go round it.
+    pub(crate) fn comes_out_from_stand(&self) -> bool {
+        let stood = self.cp.stood_first || self.cp.state == ContactState::SettingOff;
+        self.passes_from_behind() && stood && self.sv.turning == Turning::No && !self.plainly
+    }
+
+    /// Whether the partner's way is staged by what it did before.
+    pub(crate) fn does_before(&self) -> bool {
+        self.comes_out_from_stand() || self.stops_for_who_comes_over() || self.passes_after_stand()
+    }
+
+    /// Whether the partner comes along the lane beside which the ego is parked.
+    pub(crate) fn comes_along_kerb(&self) -> bool {
+        self.is_at_kerb()
+            && self.origin == Origin::Behind
+            && self.cp.state == ContactState::Moving
+            && !self.cp.stood_first
+            && !self.is_thrown()
+    }
+
+    /// Whether an oncoming partner drives straight on past an ego that stands, and touches it.
+    pub(crate) fn is_met_by_oncoming(&self) -> bool {
+        self.origin == Origin::Opposite
+            && self.cp.turning == Turning::No
+            && self.sv.state.stands()
+            && self.thing.is_none()
+            && self.door.is_none()
+            && matches!(self.cp.movement, None | Some(Movement::Straight | Movement::Passing))
+    }
+
+    /// Whether an oncoming partner that drives straight on touches an ego that goes straight on or stands.
+    pub(crate) fn is_passed_by_oncoming(&self) -> bool {
+        self.origin == Origin::Opposite
+            && self.cp.turning == Turning::No
+            && self.sv.turning == Turning::No
+            && self.thing.is_none()
+            && (matches!(self.cp.movement, None | Some(Movement::Straight | Movement::Passing))
+                || self.pulls_out_opposite())
+    }
+
+    /// Whether an oncoming partner pulled out from the kerb of its own side.
+    pub(crate) fn pulls_out_opposite(&self) -> bool {
+        let pulls_out = self.cp.movement == Some(Movement::EnteringTraffic) && self.cp.state == ContactState::Moving;
+        self.origin == Origin::Opposite && pulls_out && self.cp.turning == Turning::No && self.thing.is_none()
+    }
+
+    /// Whether the partner came along behind the ego on the opposite side, and changed from there into a lane of its own direction.
+    pub(crate) fn leaves_opposite(&self) -> bool {
+        let changes = matches!(self.cp.movement, Some(Movement::ChangingLanes | Movement::Merging));
+        self.origin == Origin::Behind && self.cp.lane == Some(LaneWord::Opposing) && changes
+    }
+
+    /// Whether the partner has to keep to the lanes of the ego's direction: nobody tells that it left them.
+    pub(crate) fn keeps_direction(&self) -> bool {
+        let along = matches!(self.origin, Origin::Ahead | Origin::Behind | Origin::Beside { .. });
+        let over = matches!(
+            self.cp.movement,
+            Some(Movement::CrossingIntoOpposingLane | Movement::WrongWay | Movement::UTurn | Movement::Passing)
+        );
+        // Who backs out of the lane ahead does so in that.
+        let backs = self.origin == Origin::Ahead && self.cp.state == ContactState::Reversing;
+        let backs = backs && self.cp.slants.is_none() && !self.cp.backs_in;
+        let drives = (self.cp.state == ContactState::Moving || backs) && self.cp.turning == Turning::No;
+        let street = !matches!(
+            self.place,
+            PlaceKind::Highway | PlaceKind::ParkingLot | PlaceKind::Garage | PlaceKind::Driveway | PlaceKind::Alley
+        );
+        along && !over && drives && street && self.cp.lane != Some(LaneWord::Opposing) && self.thing.is_none()
+    }
+
+    /// Whether the partner stood beside the lanes before it came: at the kerb, in a stall or in a driveway.
+    pub(crate) fn stood_beside(&self) -> bool {
+        let beside = matches!(self.origin, Origin::Parked { .. } | Origin::Stall { .. } | Origin::Driveway { .. });
+        beside && self.cp.state == ContactState::Moving && !is_on_foot(self.cp.kind) && self.thing.is_none()
+    }
+
+    /// Whether the partner stood beside the ego's way, or across from it, and passed it then.
+    pub(crate) fn passes_after_stand(&self) -> bool {
+        let stood = self.cp.acts.iter().position(Doing::is_stand);
+        let passed = self.cp.acts.iter().rposition(Doing::is_pass);
+        let beside = matches!(self.origin, Origin::Opposite | Origin::Beside { .. }) && !self.plainly;
+        beside && self.cp.state == ContactState::Moving && self.sv.state.stands() && stood.is_some() && stood < passed
+    }
+}

@@ -1,0 +1,32 @@
+//! Zones: on which side of somebody they lie, and how far one is off those that are told.
+
+use recrash_model::zones::ContactZone;
+
+/// Steps around the box from the nearest told zone; none where none is told. Of several on one flank all count on that, and what is told to be
+/// the rear no front shows.
+pub(crate) fn zones_off(told: &[ContactZone], seen: ContactZone) -> u32 {
+    let nearest = told.iter().filter_map(|zone| zone.steps_apart(seen)).min().map_or(0, u32::from);
+    let flank = side_of(&[seen]);
+    let along = told.iter().filter(|zone| flank.is_some() && side_of(&[**zone]) == flank);
+    let farthest = along.filter_map(|zone| zone.steps_apart(seen)).max().map_or(0, u32::from);
+    let is_rear = told.iter().any(|zone| zone.is_rear()) && !told.iter().any(|zone| zone.is_front());
+    match nearest {
+        0 => 0,
+        _ if is_rear && seen.is_front() => nearest.max(farthest).max(REAR_OFF),
+        _ => nearest.max(farthest),
+    }
+}
+
+/// Who is told to touch with its rear is so many steps off with its front. [steps]
+const REAR_OFF: u32 = 2;
+
+/// The side on which these zones lie, front and rear aside: 1 left, -1 right; nothing where they lie on both, or on neither.
+pub(crate) fn side_of(zones: &[ContactZone]) -> Option<f64> {
+    let side = |zone: &ContactZone| match zone {
+        ContactZone::FrontLeft | ContactZone::Left | ContactZone::RearLeft => 1.0,
+        ContactZone::FrontRight | ContactZone::Right | ContactZone::RearRight => -1.0,
+        _ => 0.0,
+    };
+    let first = zones.iter().map(side).find(|side| *side != 0.0)?;
+    zones.iter().all(|zone| side(zone) != -first).then_some(first)
+}

@@ -1,0 +1,164 @@
+//! Ways in which the bodies of the two touch.
+
+use crate::ego::plan::sv_at_contact;
+use crate::ground::way::Ground;
+use crate::told::crash::Told;
+use crate::told::side::{Turning, size_of};
+use crate::told::zones::zones_off;
+use crate::touch::boxes::{cp_points, sv_points, touch, velocity, zone_pairs};
+use crate::touch::fit::{aside_before_m, is_face_on};
+use crate::touch::headings::headings;
+use crate::touch::lanes;
+use crate::touch::staging::Staging;
+use crate::touch::sweep::{self, BENT};
+use recrash_metrics::contact::contact_geometry;
+use recrash_model::geometry::{OrientedBox, Pose};
+use recrash_model::math;
+use recrash_model::zones::ContactZone;
+use std::rc::Rc;
+
+/// Ways in which their bodies touch.
+pub(super) fn bodies(told: &Told, ground: &Rc<Ground>) -> Vec<Staging> {
+    let mut found: Vec<Staging> = Vec::new();
+    let mut trial = 0;
+    for sv_s_m in ground.places() {
+        let Some(sv) = sv_at_contact(told, ground, sv_s_m) else { continue };
+        let behind_m = 0.5 * (size_of(&told.sv).0 + size_of(&told.cp).0);
+        let behind = ground.sv_pose((sv_s_m - behind_m).max(0.0)).heading;
+        trial += 1;
+        if let Some((back_m, cp, (sv_seen, cp_seen))) = follows(told, ground, (sv_s_m, sv)) {
+            let (sv_off, cp_off) = (zones_off(&told.sv.zones, sv_seen), zones_off(&told.cp.zones, cp_seen));
+            // Zones are told to a step: its way through the turn is worth more than that.
+            let off = if sv_off.max(cp_off) <= 1 { 0 } else { sv_off + cp_off };
+            let (ground, cp_follows_m) = (Rc::clone(ground), Some(sv_s_m - back_m));
+            found.push(Staging {
+                ground,
+                sv_s_m,
+                sv,
+                cp,
+                cp_came: 0.0,
+                cp_follows_m,
+                bend: None,
+                door: None,
+                cost: (off, trial),
+            });
+        }
+        for (came, heading) in headings(told, sv.heading, behind) {
+            for (sv_zone, cp_zone) in zone_pairs(told) {
+                for &sv_point in sv_points(told, sv_zone) {
+                    for &cp_point in cp_points(told, cp_zone) {
+                        trial += 1;
+                        let Some((cp, sv_seen, cp_seen)) = touch(told, sv, heading, sv_point, cp_point) else {
+                            continue;
+                        };
+                        let off = zones_off(&told.sv.zones, sv_seen) + zones_off(&told.cp.zones, cp_seen);
+                        let face_on = told.scrapes() && is_face_on(told, sv, cp);
+                        let along = told.runs_into_rear() && !is_face_on(told, sv, cp);
+                        let swings = told.goes_straight_behind() && math::wrap_angle(heading - came).abs() > SWINGS_RAD;
+                        // Who keeps its lane behind an ego that leaves its own does not turn with that.
+                        let turned = math::wrap_angle(heading - came).abs() > KEEPS_RAD;
+                        let off_m = (cp.position.y - ground.sv_pose(sv_s_m).position.y).abs();
+                        let leaves = told.keeps_straight_behind() && (turned || off_m > KEEPS_M);
+                        let late = told.goes_straight_behind() && sv.heading.abs() > EARLY_RAD;
+                        let squeezed = told.turns_from_beside() && aside_before_m(told, sv, cp, came) < BESIDE_M;
+                        let other_way = told.is_struck_otherwise((sv_seen, cp_seen));
+                        // Who turns across an oncoming partner meets it in that one's lane.
+                        let before = told.sv.turning == Turning::Left && told.is_met_on_wrong_side(ground, cp);
+                        let worse = [
+                            (before, BEFORE_LANE),
+                            (face_on || along, FACE_ON),
+                            (swings, SWINGS),
+                            (leaves, LEAVES),
+                            (told.goes_right_way(cp), RIGHT_WAY),
+                            (late, LATE),
+                            (squeezed, SQUEEZED),
+                            (other_way, OTHER_WAY),
+                            (told.strikes_otherwise((sv, cp)), STRIKES),
+                            (told.crosses_off_lanes(ground, cp), OFF_LANES),
+                            (told.is_parked_otherwise(ground, cp), PARKED_OTHERWISE),
+                            (told.swings_out(ground, heading - came), SWINGS_OUT),
+                        ];
+                        let worse: u32 = worse.iter().filter(|(is, _)| *is).map(|(_, steps)| steps).sum();
+                        let bends = lanes::bends(told, (ground, sv), cp, came);
+                        let cost = (off + worse, bends as usize * BENT + trial);
+                        let (ground, bend, door) = (Rc::clone(ground), None, None);
+                        let cp_follows_m = None;
+                        found.push(Staging { ground, sv_s_m, sv, cp, cp_came: came, cp_follows_m, bend, door, cost });
+                    }
+                }
+            }
+        }
+    }
+    let nearest = found.iter().map(|staging| staging.cost.0).min().unwrap_or(u32::MAX);
+    if nearest >= if told.rubs_by() { RUBS_OFF } else { FAR_OFF } {
+        found.extend(sweep::stagings(told, ground, trial, nearest));
+    }
+    found
+}
+
+/// Where no way of touching is nearer than this to the told zones, the partner turns as it touches; the second of who passes and touches with
+/// its flank or its rear.
+const FAR_OFF: u32 = 2;
+const RUBS_OFF: u32 = 1;
+
+/// Of who rubs along the other, a front on a rear is worth as much as so many zone steps, and so is a flank where a front is told on a
+/// rear; and of who goes straight on behind an ego that turns, that it swings by more than this. [rad]
+const FACE_ON: u32 = 2;
+const SWINGS: u32 = 2;
+const SWINGS_RAD: f64 = 0.35;
+
+/// Of an oncoming partner, that the ego, which turns, has not come to its lane.
+const BEFORE_LANE: u32 = 3;
+
+/// Of who has a signal or a sign on the crossing road, that it does not come along the lanes that lead there.
+const OFF_LANES: u32 = 1;
+
+/// Of who passes an ego at the kerb, that it swings out from there as it touches.
+const SWINGS_OUT: u32 = 2;
+
+/// Of who is told to stand beside the lanes, that its middle is in one, or that it stands askew.
+const PARKED_OTHERWISE: u32 = 2;
+
+/// Of who strikes the other with parts that nobody tells, that the other one's front does.
+const OTHER_WAY: u32 = 1;
+
+/// Of two that drive on beside each other, that the one comes to the other who is not told to have struck it.
+const STRIKES: u32 = 1;
+
+/// Of who keeps its lane behind an ego that leaves its own, that it is at more than this to its way, or farther beside it. [rad, m]
+const LEAVES: u32 = 1;
+const KEEPS_RAD: f64 = 0.08;
+const KEEPS_M: f64 = 1.2;
+
+/// Of who goes the wrong way along a crossing road, that it is on the side where that is the right one, or near the middle.
+const RIGHT_WAY: u32 = 1;
+
+/// And of who turns across from beside, that it was nearer to the ego's line than this before its turn. [m]
+const SQUEEZED: u32 = 1;
+const BESIDE_M: f64 = 2.4;
+
+/// Of who goes straight on behind an ego that turns, that the ego has turned by more than this. [rad]
+const LATE: u32 = 1;
+const EARLY_RAD: f64 = 0.6;
+
+/// Who comes behind an ego that turns comes by its way: how far behind it on that, where they touch, and the zones that then meet.
+fn follows(told: &Told, ground: &Ground, (sv_s_m, sv): (f64, Pose)) -> Option<(f64, Pose, (ContactZone, ContactZone))> {
+    if !told.turns_behind() {
+        return None;
+    }
+    let ((sv_length, sv_width), (cp_length, cp_width)) = (size_of(&told.sv), size_of(&told.cp));
+    let own = OrientedBox::new(sv, sv_length, sv_width);
+    let at = |back_m: f64| OrientedBox::new(ground.sv_pose(sv_s_m - back_m), cp_length, cp_width);
+    let (mut inside, mut outside) = (0.25 * cp_length, sv_length + cp_length);
+    if outside > sv_s_m || !at(inside).overlaps(&own) || at(outside).overlaps(&own) {
+        return None;
+    }
+    for _ in 0..30 {
+        let middle = 0.5 * (inside + outside);
+        if at(middle).overlaps(&own) { inside = middle } else { outside = middle }
+    }
+    let (cp, touching) = (ground.sv_pose(sv_s_m - inside), at(inside - 0.01));
+    let velocities = (velocity(&told.sv, sv.heading), velocity(&told.cp, cp.heading));
+    let geometry = contact_geometry(&own, velocities.0, &touching, velocities.1);
+    Some((inside, cp, (geometry.ego_zone, geometry.other_zone)))
+}

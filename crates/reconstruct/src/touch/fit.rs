@@ -1,0 +1,149 @@
+//! How well a way of touching fits what is told, beside the zones that meet.
+
+use crate::ground::way::Ground;
+use crate::told::crash::Told;
+use crate::told::doing::Doing;
+use crate::told::side::{Side, Turning, size_of};
+use crate::told::zones::side_of;
+use crate::touch::boxes::velocity;
+use crate::touch::headings::sign;
+use crate::touch::lanes::turn_m;
+use crate::usual::LANE_M;
+use recrash_model::account::{ContactState, CrashType, Origin, Striker};
+use recrash_model::geometry::{Pose, Vec2};
+use recrash_model::math;
+use recrash_model::template::Movement;
+use recrash_model::zones::ContactZone;
+
+/// Whether two that touch do so with a front on a rear, and not along a flank: seen along the ego they overlap less than across it.
+pub(super) fn is_face_on(told: &Told, sv: Pose, cp: Pose) -> bool {
+    let ((sv_length, sv_width), (cp_length, cp_width)) = (size_of(&told.sv), size_of(&told.cp));
+    let (ahead, way) = (Vec2::from_heading(sv.heading), cp.position - sv.position);
+    let turn = cp.heading - sv.heading;
+    let (cos, sin) = (math::cos(turn).abs(), math::sin(turn).abs());
+    let along_m = 0.5 * (sv_length + cos * cp_length + sin * cp_width) - way.dot(ahead).abs();
+    let across_m = 0.5 * (sv_width + cos * cp_width + sin * cp_length) - ahead.cross(way).abs();
+    along_m < across_m
+}
+
+/// Who is nearer to the middle of the road than this counts as on its right side. [m]
+const RIGHT_SIDE_M: f64 = 1.8;
+
+/// How far beside the ego's line somebody came along that turned to this pose. [m]
+pub(super) fn aside_before_m(told: &Told, sv: Pose, cp: Pose, came: f64) -> f64 {
+    let turn = math::wrap_angle(cp.heading - came);
+    (cp.position.y - turn.signum() * turn_m(told) * (1.0 - math::cos(turn)) - sv.position.y).abs()
+}
+
+impl Told {
+    /// Whether the partner turns across the ego's way from the lane beside it.
+    pub(super) fn turns_from_beside(&self) -> bool {
+        matches!(self.origin, Origin::Beside { .. }) && matches!(self.cp.turning, Turning::Left | Turning::Right)
+    }
+
+    /// Whether the front of the one who is told to have been struck meets a flank of the one who is told to have struck it.
+    pub(super) fn is_struck_otherwise(&self, (sv_seen, cp_seen): (ContactZone, ContactZone)) -> bool {
+        let flank = |zone: ContactZone| matches!(zone, ContactZone::Left | ContactZone::Right);
+        let drives = |side: &Side| side.state == ContactState::Moving;
+        match self.striker {
+            Some(Striker::Cp) if drives(&self.cp) && self.cp.zones.is_empty() => sv_seen.is_front() && flank(cp_seen),
+            Some(Striker::Sv) if drives(&self.sv) && self.sv.zones.is_empty() => cp_seen.is_front() && flank(sv_seen),
+            _ => false,
+        }
+    }
+
+    /// Whether of two that drive on beside each other, of whom the partner leaves its lane, the one comes to the other who is not told to have
+    /// struck it.
+    pub(super) fn strikes_otherwise(&self, (sv, cp): (Pose, Pose)) -> bool {
+        let drives = |side: &Side| side.state == ContactState::Moving && side.turning == Turning::No;
+        let beside = self.crash_type == CrashType::Lateral && matches!(self.origin, Origin::Beside { .. });
+        // Across the road.
+        let to_cp = (cp.position.y - sv.position.y).signum();
+        let comes = |side: &Side, pose: Pose| velocity(side, pose.heading).y * to_cp;
+        let (sv_mps, cp_mps) = (comes(&self.sv, sv), -comes(&self.cp, cp));
+        let other = match self.striker {
+            Some(Striker::Cp) => sv_mps > cp_mps,
+            Some(Striker::Sv) => cp_mps > sv_mps,
+            _ => false,
+        };
+        beside && self.leaves_its_lane() && drives(&self.sv) && drives(&self.cp) && other
+    }
+
+    /// Whether the partner is told to pass, and to touch with its flank or its rear.
+    pub(super) fn rubs_by(&self) -> bool {
+        self.cp.acts.iter().any(Doing::is_pass)
+    }
+
+    /// Whether the partner comes behind an ego that turns, by the same way.
+    pub(super) fn turns_behind(&self) -> bool {
+        let turns = match self.sv.turning {
+            Turning::Left => Movement::LeftTurn,
+            Turning::Right => Movement::RightTurn,
+            Turning::No | Turning::Round => return false,
+        };
+        // Behind an ego that has turned it goes straight on again.
+        let over = self.sv.turned || self.sv.state.stands();
+        let same = self.cp.movement.is_none_or(|movement| movement == turns || over && movement == Movement::Straight);
+        let moves = matches!(self.cp.state, ContactState::Moving | ContactState::SettingOff);
+        same && moves && self.origin == Origin::Behind && self.thing.is_none() && self.rig.is_none()
+    }
+
+    /// Whether a partner that is told to go the wrong way along a crossing road is on the side of it where its way is the right one.
+    pub(super) fn goes_right_way(&self, cp: Pose) -> bool {
+        let wrong_way = self.cp.movement == Some(Movement::WrongWay);
+        matches!(self.origin, Origin::Cross { side } if wrong_way && sign(side) * cp.position.x < RIGHT_SIDE_M)
+    }
+
+    /// Whether a partner that has a signal or a sign on the crossing road, and goes straight on, is beside the lanes that lead there.
+    pub(super) fn crosses_off_lanes(&self, ground: &Ground, cp: Pose) -> bool {
+        let own_way = !matches!(self.cp.movement, Some(Movement::WrongWay | Movement::Backing));
+        let straight = self.cp.turning == Turning::No && self.cp.state != ContactState::Reversing && own_way;
+        let lanes_m = ground.lanes as f64 * LANE_M;
+        let told = straight && self.cp.control.is_some() && ground.junction;
+        matches!(self.origin, Origin::Cross { side } if told && !(0.0..=lanes_m).contains(&(-sign(side) * cp.position.x)))
+    }
+
+    /// Whether the partner drives straight on behind an ego that leaves its lane.
+    pub(super) fn keeps_straight_behind(&self) -> bool {
+        let drives = |side: &Side| side.state == ContactState::Moving && side.turning == Turning::No;
+        let straight = self.cp.movement.is_none_or(|movement| movement == Movement::Straight) && !self.cp.dodges;
+        self.origin == Origin::Behind && drives(&self.sv) && drives(&self.cp) && straight && self.sv_aside().is_some()
+    }
+
+    /// Whether they rub along each other: a flank takes part, and it is not the front of the one on the rear of the other.
+    pub(super) fn scrapes(&self) -> bool {
+        self.crash_type == CrashType::Lateral && side_of(&self.sv.zones).is_some()
+    }
+
+    /// Whether the front of the one is told to have met the rear of the other, both in one lane.
+    pub(super) fn runs_into_rear(&self) -> bool {
+        let in_line = matches!(self.origin, Origin::Behind | Origin::Ahead);
+        let straight = self.sv.turning == Turning::No && self.cp.turning == Turning::No && self.thing.is_none();
+        self.crash_type == CrashType::FrontToRear && in_line && straight
+    }
+
+    /// Whether a partner that passes an ego at the kerb would come out from there: it came along the lane.
+    pub(super) fn swings_out(&self, ground: &Ground, turned: f64) -> bool {
+        self.comes_along_kerb() && self.passes_from_behind() && ground.stands_m > 0.0 && turned > SWINGS_OUT_RAD
+    }
+
+    /// Whether a partner that is told to stand beside the lanes would stand in one, or askew.
+    pub(super) fn is_parked_otherwise(&self, ground: &Ground, cp: Pose) -> bool {
+        let askew = math::sin(cp.heading).abs() > ASKEW && !self.diagonal;
+        self.stands_beside(false) && (askew || ground.is_in_lanes(cp, 0.0, 0.0))
+    }
+}
+
+/// Who has turned out of the lane by more swings out. [rad]
+const SWINGS_OUT_RAD: f64 = 0.02;
+
+/// Sine of the angle to the road at which who is parked along it stands askew.
+const ASKEW: f64 = 0.1;
+
+impl Told {
+    /// Whether an oncoming partner that drives straight on touches an ego that stands on the ego's side of the road. Nobody tells that it
+    /// left its own: it does so late.
+    pub(crate) fn is_met_on_wrong_side(&self, ground: &Ground, cp: Pose) -> bool {
+        self.is_met_by_oncoming() && cp.position.y < ground.opposing_y_m() - 0.5 * LANE_M
+    }
+}

@@ -1,0 +1,37 @@
+//! Numbers and lengths that more than one part goes by, where nobody tells another.
+
+/// Width of driving lanes. [m]
+pub(crate) const LANE_M: f64 = 3.4;
+
+/// From the ego's front to who stands ahead. [m]
+pub(crate) const LEAD_GAP_M: f64 = 2.5;
+
+/// Room that is left before somebody, or behind. [m]
+pub(crate) const ROOM_M: f64 = 2.0;
+
+/// Slower than this is standing. [m/s]
+pub(crate) const STANDS_MPS: f64 = 0.1;
+
+/// A course goes on behind the place of the contact, so far that nobody slows for its end before it. [m]
+pub(crate) fn beyond_m(speed_mps: f64) -> f64 {
+    20.0 + 5.0 * speed_mps
+}
+
+/// Nothing on wheels, longer than the first, bends its line tighter than the second. [m]
+pub(crate) const WHEELED_M: f64 = 2.5;
+pub(crate) const TIGHTEST_M: f64 = 4.5;
+
+/// How long others who stopped have stood when they are hit. [s]
+pub(crate) const STOOD_S: f64 = 2.0;
+
+/// Speed of others on their way to a stop. [m/s]
+pub(crate) const ROLLING_MPS: f64 = 7.0;
+
+/// How fast a thing is that rolls or slides. [m/s]
+pub(crate) const SLIDES_MPS: f64 = 2.0;
+
+/// Usual speed on foot. [m/s]
+pub(crate) const WALKS_MPS: f64 = 1.4;
+
+/// Usual speed in a turn. [m/s]
+pub(crate) const TURNS_MPS: f64 = 5.0;
