@@ -1,4 +1,4 @@
-//! Told facts, held against a rollout. Nothing here reads the scenario: only who was where.
+//! Told facts, held against a rollout: who was where when. Of the scenario only its roads, signals and stops are read.
 
 use crate::facts::acts::{self, Did};
 use crate::facts::contact::{

@@ -33,7 +33,7 @@ fn queue_m(told: &Told) -> Option<f64> {
     let aside_m = if told.sv_aside().is_some() { ROOM_M } else { 0.0 };
     let stands_m = 0.5 * size_of(&told.sv).0 + ahead * (LEAD_GAP_M + long_m) + aside_m + FIRST_AT_LINE_M;
     // Who has set off behind it has come nearer to the line.
-    let came_m = 0.5 * told.sv.speed_mps * told.sv.speed_mps / SETS_OFF_MPS2;
+    let came_m = 0.5 * told.sv.speed_mps * told.sv.speed_mps / CAME_MPS2;
     Some(if queue::sets_off(told) { stands_m - came_m } else { stands_m })
 }
 
@@ -47,7 +47,7 @@ const KERB_BEFORE_M: f64 = 10.0;
 const FIRST_AT_LINE_M: f64 = 0.6;
 
 /// No ego that sets off behind it comes nearer to the line by more than with this. [m/s^2]
-const SETS_OFF_MPS2: f64 = 2.0;
+const CAME_MPS2: f64 = 2.0;
 
 /// Who stands first at a signal stands so far before its line, and sets off from there for so long, for so far at least and at most.
 /// [m, s, m]

@@ -1,6 +1,7 @@
 //! Whether somebody near hinders nobody.
 
 use crate::facts::{movement, signals};
+use crate::usual::WHEELED_M;
 use recrash_model::geometry::{OrientedBox, Vec2};
 use recrash_model::math;
 use recrash_model::rollout::{ActorState, ActorTrack, EventKind, Rollout};
@@ -35,7 +36,7 @@ pub(super) fn hinders_nobody(id: &str, scenario: &Scenario, (before, after): (&R
         after.actors.iter().all(|other| other.id == id || own.gap(&of(other, step)) > CLEAR_M)
             && after.obstacles.iter().all(|placed| own.gap(&placed.outline()) > CLEAR_M)
     };
-    let drives = VehicleSpec::of(track.kind).length_m > 2.5;
+    let drives = VehicleSpec::of(track.kind).length_m > WHEELED_M;
     let on_road = |step: usize| !drives || scenario.network().on_road(track.states[step].position());
     let met = &after.ego_track().states[..=((first_s * 10.0) as usize).min(after.ego_track().states.len() - 1)];
     contacts(before) == contacts(after)

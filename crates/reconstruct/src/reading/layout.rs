@@ -1,5 +1,6 @@
 //! The words for the road, and for the places on it.
 
+use crate::reading::words::{span, text};
 use crate::told::layout::{Counted, Layout, Standing};
 use recrash_model::account::{
     Account, Act, ActFact, Fact, LaneWord, LeftRight, Origin, Party, RoadFeature, Source, told,
@@ -54,8 +55,8 @@ fn goes_to_turn_lane(account: &Account, partner: &Party) -> bool {
 }
 
 fn standing(account: &Account, party: &Party) -> Standing {
-    let lane = party.lane.as_ref().and_then(|lane| Counted::of(text(&lane.source)?));
-    let double = sources(party).any(|source| text(source).is_some_and(|text| text.to_lowercase().contains("double")));
+    let lane = party.lane.as_ref().and_then(|lane| Counted::of(&text(&lane.source)));
+    let double = sources(party).any(|source| text(source).contains("double"));
     let stands = |fact: &&ActFact| matches!(fact.act, Act::Hold | Act::Park) && !fact.after_contact && !fact.begun;
     let in_lane = double || party.acts.iter().rfind(stands).is_some_and(is_in_lane);
     Standing { counted: lane, at_kerb: stands_at_kerb(account, party), in_lane }
@@ -63,10 +64,8 @@ fn standing(account: &Account, party: &Party) -> Standing {
 
 /// "parked in the travel lane", and not partly there: the reader's words of who stands in a lane end with it.
 fn is_in_lane(fact: &ActFact) -> bool {
-    text(&fact.source).is_some_and(|text| {
-        let text = text.to_lowercase();
-        text.ends_with("lane") && !["partial", "partly"].iter().any(|word| text.contains(word))
-    })
+    let text = text(&fact.source);
+    text.ends_with("lane") && !["partial", "partly"].iter().any(|word| text.contains(word))
 }
 
 /// So many bytes behind the words that somebody stands, at most, begin those for the kerb: "was stopped to the right of the AV in a curbside
@@ -79,12 +78,12 @@ fn stands_at_kerb(account: &Account, party: &Party) -> bool {
         matches!(fact.act, Act::Hold | Act::Stop | Act::Park | Act::PullOver) && !fact.after_contact && !fact.begun
     };
     let ends: Vec<usize> =
-        party.acts.iter().filter(stands).filter_map(|fact| place(&fact.source)).map(|at| at.1).collect();
+        party.acts.iter().filter(stands).filter_map(|fact| span(&fact.source)).map(|at| at.1).collect();
     let kerb = |fact: &&Fact<RoadFeature>| {
-        let words = text(&fact.source).map(str::to_lowercase).unwrap_or_default();
+        let words = text(&fact.source);
         fact.value == RoadFeature::ParkingLane && words.contains("curb")
     };
-    let kerbs = account.place.features.iter().filter(kerb).filter_map(|fact| place(&fact.source));
+    let kerbs = account.place.features.iter().filter(kerb).filter_map(|fact| span(&fact.source));
     let mut kerbs = kerbs.map(|at| at.0);
     kerbs.any(|kerb| {
         ends.iter().any(|end| (*end..*end + BEHIND_STAND).contains(&kerb) || kerb + BEHIND_STAND > *end && kerb < *end)
@@ -109,8 +108,7 @@ fn rear_door(account: &Account, partner: &Party) -> Option<bool> {
     let mut all = opens(&account.sv);
     all.extend(opens(partner));
     all.extend(account.door.iter().map(|fact| fact.source.clone()));
-    all.iter().filter_map(text).find_map(|text| {
-        let text = text.to_lowercase();
+    all.iter().map(text).find_map(|text| {
         let words: Vec<&str> =
             text.split(|letter: char| !letter.is_alphanumeric()).filter(|word| !word.is_empty()).collect();
         let door = words.iter().position(|word| *word == "door")?;
@@ -126,20 +124,6 @@ fn sources(party: &Party) -> impl Iterator<Item = &Source> {
     let kind = party.kind.iter().map(|fact| &fact.source);
     let state = party.state.iter().map(|fact| &fact.source);
     kind.chain(state).chain(party.acts.iter().map(|fact| &fact.source))
-}
-
-fn text(source: &Source) -> Option<&str> {
-    match source {
-        Source::Words { text, .. } => Some(text),
-        _ => None,
-    }
-}
-
-fn place(source: &Source) -> Option<(usize, usize)> {
-    match source {
-        Source::Words { start, end, .. } => Some((*start, *end)),
-        _ => None,
-    }
 }
 
 #[cfg(test)]

@@ -42,9 +42,9 @@ pub(super) fn reasons(account: &Account, origin: Origin) -> Vec<StandReason> {
     };
     let leads = account.sv.reasons.iter().any(leads);
     // "A construction worker" is somebody, and a construction truck is whom it stands behind.
-    let works = said(StandReason::LeadVehicle) || said(StandReason::Pedestrian) && any(is_on_foot);
+    let works = said(StandReason::LeadVehicle) || said(StandReason::Pedestrian) && any(is_light);
     told.filter(|reason| match reason {
-        StandReason::Pedestrian => any(is_on_foot),
+        StandReason::Pedestrian => any(is_light),
         StandReason::Animal => any(|kind| kind.group() == KindGroup::Animal),
         StandReason::Yield => somebody || !explained,
         StandReason::BlockedPath => !works,
@@ -78,7 +78,8 @@ pub(super) fn pusher_stands(account: &Account) -> bool {
     before.is_some_and(|list| !list.is_empty() && list.into_iter().all(|stands| stands))
 }
 
-fn is_on_foot(kind: Kind) -> bool {
+/// Whether it is somebody on foot or on a cycle.
+fn is_light(kind: Kind) -> bool {
     matches!(kind.group(), KindGroup::OnFoot | KindGroup::Cyclist)
 }
 

@@ -28,7 +28,7 @@ pub(super) fn told(party: &Party, state: ContactState) -> Vec<Phase> {
     for (number, fact) in acts.iter().enumerate() {
         // Of what was begun, a way from one stop to the next was driven.
         let stops_next = acts[number..].iter().find(|fact| stands(fact)).is_some_and(|fact| fact.act == Act::Stop);
-        if fact.begun && !(leaves_line(fact.act) && list.last() == Some(&Phase::Stands) && stops_next) {
+        if fact.begun && !(drives_aside(fact.act) && list.last() == Some(&Phase::Stands) && stops_next) {
             continue;
         }
         went_on |= fact.act == Act::Slow && !list.is_empty();
@@ -89,11 +89,11 @@ pub(super) fn told(party: &Party, state: ContactState) -> Vec<Phase> {
 }
 
 /// Whether somebody who does this drives, out of its line.
-const fn leaves_line(act: Act) -> bool {
+const fn drives_aside(act: Act) -> bool {
     matches!(act, Act::LaneChange | Act::Drift | Act::Swerve | Act::Turn | Act::UTurn | Act::PullOut)
 }
 
 /// Whether somebody who does this behind a stop has come to that: it went on from there, or was about to.
 fn goes_on(fact: &ActFact) -> bool {
-    leaves_line(fact.act) || matches!(fact.act, Act::SetOff | Act::Accelerate | Act::Pass | Act::Enter | Act::Cross)
+    drives_aside(fact.act) || matches!(fact.act, Act::SetOff | Act::Accelerate | Act::Pass | Act::Enter | Act::Cross)
 }

@@ -93,7 +93,7 @@ impl Lanes {
 const LEAVES_S: [f64; 5] = [2.5, 3.5, 5.0, 2.0, 1.5];
 const LEAST_M: f64 = 4.0;
 const SIDEWAYS_MPS2: f64 = 2.5;
-const TIGHTEST_M: f64 = 8.0;
+const TIGHTEST_LEAD_M: f64 = 8.0;
 const TIGHTEST_LENGTHS: f64 = 0.75;
 
 /// Who stood behind the ego and goes round it steers no tighter, and drives straight on for so long first. [m]
@@ -132,7 +132,7 @@ pub(crate) fn from_lane(told: &Told, staging: &Staging, pace: &Pace, arm_m: f64)
     let lanes = Lanes::of(&staging.ground, staging.cp_came)?;
     let speed_mps = pace.speed_mps.max(told.cp.speed_mps);
     let comes_round = told.comes_round_from_stand();
-    let tightest_m = if comes_round { ROUND_M } else { TIGHTEST_M };
+    let tightest_m = if comes_round { ROUND_M } else { TIGHTEST_LEAD_M };
     let tightest_m = tightest_m.max(TIGHTEST_LENGTHS * size_of(&told.cp).0).max(speed_mps * speed_mps / SIDEWAYS_MPS2);
     // Where it would come from without bending twice.
     let straight_m = lanes.left_m(cp.position) - turn.signum() * tightest_m * (1.0 - math::cos(turn));
@@ -223,7 +223,7 @@ pub(super) fn bends(told: &Told, (ground, sv): (&Ground, Pose), cp: Pose, came: 
     let Some(lanes) = Lanes::of(ground, came) else { return 0 };
     let comes_round = told.comes_round_from_stand();
     // Who pulls out from behind the ego is yet on its bend.
-    let gained_m = if comes_round { turn.signum() * TIGHTEST_M * (1.0 - math::cos(turn)) } else { 0.0 };
+    let gained_m = if comes_round { turn.signum() * TIGHTEST_LEAD_M * (1.0 - math::cos(turn)) } else { 0.0 };
     let left_m = lanes.left_m(cp.position) - gained_m;
     let lane_m = lanes.nearest(left_m, |lane_m| lanes.may_lead(told, sv, lane_m)).first().copied();
     let off_m = lane_m.map_or(f64::from(NOWHERE), |lane_m| (lane_m - left_m).abs() - KEEPS_M).max(0.0);

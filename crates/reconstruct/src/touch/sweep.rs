@@ -10,6 +10,7 @@ use crate::touch::boxes::{points, velocity, zone_pairs};
 use crate::touch::headings::headings;
 use crate::touch::lanes::turn_m;
 use crate::touch::staging::{Bend, Staging};
+use crate::usual::WHEELED_M;
 use recrash_metrics::contact::contact_geometry;
 use recrash_model::account::ContactState;
 use recrash_model::geometry::{OrientedBox, Pose, Vec2};
@@ -29,7 +30,7 @@ const BY_RAD: [f64; 3] = [0.25, 0.5, 0.12];
 /// who walks, stands, reverses or is thrown.
 pub(super) fn stagings(told: &Told, ground: &Rc<Ground>, mut trial: usize, nearer: u32) -> Vec<Staging> {
     let drives = matches!(told.cp.state, ContactState::Moving | ContactState::SettingOff);
-    let wheels = VehicleSpec::of(told.cp.kind).length_m > 2.5;
+    let wheels = VehicleSpec::of(told.cp.kind).length_m > WHEELED_M;
     if !drives || !wheels || told.thing.is_some() || told.rig.is_some() || told.is_thrown() {
         return Vec::new();
     }
@@ -141,12 +142,12 @@ pub(crate) fn can_be_driven(told: &Told, begin: Pose, legs: &[Leg]) -> bool {
     });
     let steps = (course.length_m() / STEP_M).ceil() as usize;
     let bent = |step: usize| course.spot(STEP_M * step as f64).curvature.abs();
-    let most = 1.0 / TIGHTEST_M.max(TIGHTEST_LENGTHS * length_m);
+    let most = 1.0 / TIGHTEST_SWEEP_M.max(TIGHTEST_LENGTHS * length_m);
     curves && (0..=steps).all(|step| bent(step) <= most)
 }
 
 /// Nobody who turns as it touches drives a tighter bend, or one tighter than so many of its lengths. [m]
-const TIGHTEST_M: f64 = 5.0;
+const TIGHTEST_SWEEP_M: f64 = 5.0;
 const TIGHTEST_LENGTHS: f64 = 0.5;
 
 /// The partner's bend, seen from the ego that moves meanwhile: tried with many pairs of points that meet.
