@@ -1,6 +1,6 @@
 //! The careful and competent human driver of UN R157 (unr157, Annex 4, Appendix 3).
 
-use crate::driver::{Body, Sees};
+use crate::sight::{Body, Sees};
 
 /// Deceleration of a car whose driver has left the accelerator and does not brake yet (as published by mattas2022). [m/s^2]
 pub const RELEASE_MPS2: f64 = 0.4;

@@ -1,6 +1,6 @@
 //! The fuzzy safety model (mattas2020, mattas2022; unr157 since its 01 series, Annex 3).
 
-use crate::driver::{Body, FULL_BRAKING_MPS2, REACTION_TIME_S, STEPS_PER_S, Sees};
+use crate::sight::{Body, FULL_BRAKING_MPS2, REACTION_TIME_S, STEPS_PER_S, Sees};
 use recrash_model::math::sq;
 
 /// Comfortable braking of the rear one. [m/s^2]

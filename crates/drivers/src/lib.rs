@@ -18,9 +18,11 @@ mod prevent;
 mod regulation;
 mod responsibility;
 mod scene;
+mod sight;
 
-pub use driver::{Body, Conflict, Driver, ReferenceDriver, STEPS_PER_S};
+pub use driver::{Conflict, Driver, ReferenceDriver};
 pub use grid::{Concrete, Grid};
 pub use limits::{Occupants, least_time_to_collision_s};
 pub use prevent::preventability;
 pub use scene::{Crash, WIDTH_M, drive};
+pub use sight::{Body, STEPS_PER_S};

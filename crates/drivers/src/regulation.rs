@@ -1,6 +1,6 @@
 //! What UN R157 asks of the system itself in a cut-in (unr157, paragraph 5.2.5.2).
 
-use crate::driver::{Body, STEPS_PER_S, Sees};
+use crate::sight::{Body, STEPS_PER_S, Sees};
 
 /// From seeing the danger to braking. [s]
 pub const REACTION_TIME_S: f64 = 0.35;

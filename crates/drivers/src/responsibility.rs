@@ -1,6 +1,6 @@
 //! Responsibility-sensitive safety (shalevshwartz2017), with the parameters of mattas2022.
 
-use crate::driver::{Body, REACTION_TIME_S, Sees};
+use crate::sight::{Body, REACTION_TIME_S, Sees};
 use recrash_model::math::sq;
 
 /// Acceleration that the rear one may still have while it reacts. [m/s^2]

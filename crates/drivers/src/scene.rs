@@ -3,8 +3,9 @@
 //! A vehicle moves by its speed of the step that it moves to. Places are summed in the published order, because some grid points
 //! lie on a limit to the last bit.
 
-use crate::driver::{Body, Conflict, Driver, ReferenceDriver, STEPS_PER_S};
+use crate::driver::{Conflict, Driver, ReferenceDriver};
 use crate::grid::Concrete;
+use crate::sight::{Body, STEPS_PER_S};
 
 const LENGTH_M: f64 = 4.3;
 /// Width of every vehicle in the published grids. [m]

@@ -2,11 +2,13 @@
 //! others.
 
 use crate::scene::Scene;
-use crate::view::MOST_NEIGHBOURS;
 use recrash_model::geometry::{OrientedBox, Vec2};
 use recrash_model::rollout::ActorState;
 use recrash_model::scenario::Aspect;
 use recrash_sim::Observation;
+
+/// Most neighbours of a view.
+pub const MOST_NEIGHBOURS: usize = 32;
 
 /// One number of an observation.
 #[derive(Debug, Clone, Copy, PartialEq)]

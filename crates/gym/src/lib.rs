@@ -14,22 +14,27 @@
 //! between two steps (200 µs); nothing that is computed depends on it.
 
 mod batch;
+mod ground;
 mod handles;
 mod kinematics;
+mod outputs;
 mod raster;
 mod rays;
 mod reward;
 mod scene;
+mod settings;
 mod slot;
 mod split;
 mod view;
 
-pub use batch::{Actions, Autoreset, Batch, BatchError, Outputs, Settings};
+pub use batch::{Actions, Batch, BatchError};
 pub use handles::{ACTS, Act, Handles};
-pub use kinematics::{FIELDS_ALWAYS, FIELDS_OF_OTHER, Field};
+pub use kinematics::{FIELDS_ALWAYS, FIELDS_OF_OTHER, Field, MOST_NEIGHBOURS};
+pub use outputs::Outputs;
 pub use raster::{CHANNELS, Raster};
 pub use rays::Rays;
 pub use reward::{Reward, TERMS};
 pub use scene::{Scene, SceneError};
+pub use settings::{Autoreset, Settings};
 pub use split::held_out;
-pub use view::{MOST_NEIGHBOURS, View, ViewError};
+pub use view::{View, ViewError};

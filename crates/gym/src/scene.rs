@@ -1,6 +1,6 @@
 //! A scenario, ready to be begun again and again.
 
-use crate::raster::Ground;
+use crate::ground::Ground;
 use recrash_model::geometry::{OrientedBox, Vec2};
 use recrash_model::vehicle::VehicleSpec;
 use recrash_roads::{LanePath, Scenario};

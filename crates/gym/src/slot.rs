@@ -1,10 +1,11 @@
 //! One of many runs: an episode after the other.
 
-use crate::batch::{Autoreset, Row, Settings};
 use crate::kinematics::EgoFrame;
+use crate::outputs::Row;
 use crate::raster::Raster;
 use crate::reward::{Memory, TERMS};
 use crate::scene::Scene;
+use crate::settings::{Autoreset, Settings};
 use recrash_lab::judge;
 use recrash_model::rollout::{Termination, TerminationKind};
 use recrash_model::run::JudgedRun;

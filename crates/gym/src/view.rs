@@ -1,13 +1,11 @@
 //! What a driver is shown.
 
-use crate::kinematics::{EgoFrame, FIELDS_ALWAYS, FIELDS_OF_OTHER, write_always, write_nearest};
-use crate::raster::{Ground, Raster};
+use crate::ground::Ground;
+use crate::kinematics::{EgoFrame, FIELDS_ALWAYS, FIELDS_OF_OTHER, MOST_NEIGHBOURS, write_always, write_nearest};
+use crate::raster::Raster;
 use crate::rays::Rays;
 use crate::scene::Scene;
 use recrash_sim::Observation;
-
-/// Most neighbours of a view.
-pub const MOST_NEIGHBOURS: usize = 32;
 
 /// What a driver is shown in every step.
 #[derive(Debug, Clone, PartialEq)]
@@ -75,7 +73,7 @@ impl View {
     /// Draws what the view needs of a scene beforehand.
     pub(crate) fn prepare(&self, scene: &mut Scene) {
         if matches!(self, Self::Raster(_)) && scene.ground.is_none() {
-            scene.ground = Some(Ground::of(scene));
+            scene.ground = Some(Ground::of(&scene.scenario));
         }
     }
 

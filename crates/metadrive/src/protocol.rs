@@ -1,7 +1,6 @@
 //! What is said to a worker and what it answers: one JSON object a line, see `crates/plan/python/run_metadrive.py`.
 
 use crate::METADRIVE_VERSION;
-use crate::worker::NotReady;
 use recrash_model::kinds::PartnerKind;
 use recrash_model::rollout::{
     ActorState, ActorTrack, Event, EventKind, ROLLOUT_FORMAT, Role, Rollout, STEP_S, Termination, TerminationKind,
@@ -65,18 +64,8 @@ pub(crate) struct Hello {
 
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
 pub(crate) struct Problem {
-    kind: String,
-    detail: String,
-}
-
-impl Problem {
-    pub(crate) fn reason(&self, hello: &Hello) -> NotReady {
-        match self.kind.as_str() {
-            "metadrive_missing" => NotReady::Missing { python: hello.python.clone() },
-            "metadrive_version" => NotReady::Version { found: hello.metadrive.clone().unwrap_or_default() },
-            _ => NotReady::Import { detail: self.detail.clone() },
-        }
-    }
+    pub(crate) kind: String,
+    pub(crate) detail: String,
 }
 
 #[derive(Debug, Deserialize)]

@@ -1,7 +1,7 @@
 //! One worker process: started, asked, and ended.
 
 use crate::MetadriveError;
-use crate::protocol::{Answer, Done, Hello, Message, Request};
+use crate::protocol::{Answer, Done, Hello, Message, Problem, Request};
 use recrash_child::{Program, Silence, printable};
 use recrash_plan::metadrive::{Run, SCRIPT};
 use std::path::Path;
@@ -78,6 +78,17 @@ pub enum NotReady {
     },
 }
 
+impl NotReady {
+    /// What a worker says of itself at first.
+    fn of(problem: &Problem, hello: &Hello) -> Self {
+        match problem.kind.as_str() {
+            "metadrive_missing" => Self::Missing { python: hello.python.clone() },
+            "metadrive_version" => Self::Version { found: hello.metadrive.clone().unwrap_or_default() },
+            _ => Self::Import { detail: problem.detail.clone() },
+        }
+    }
+}
+
 fn complained(complaint: &str) -> String {
     if complaint.is_empty() { String::new() } else { format!(", saying: {complaint}") }
 }
@@ -113,7 +124,7 @@ impl Worker {
                     worker.hello = hello;
                     Ok(worker)
                 }
-                Some(problem) => Err(not_ready(problem.reason(&hello))),
+                Some(problem) => Err(not_ready(NotReady::of(problem, &hello))),
             },
             Ok(Message::Answer(_)) => {
                 Err(not_ready(NotReady::NoWorker { fault: WorkerFault::Rubbish { beginning: "an answer".to_owned() } }))

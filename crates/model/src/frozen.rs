@@ -3,8 +3,8 @@
 use crate::account::CrashType;
 use crate::hash::Fnv;
 use crate::metrics::Expectation;
+use crate::origin::{Origin, RecordRef};
 use crate::profile::SystemProfile;
-use crate::record::RecordRef;
 use crate::scenario::{ScenarioDraft, Source};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -112,7 +112,6 @@ impl Provenance {
 impl About {
     /// What a scenario says of itself.
     pub fn of(source: &Source) -> Self {
-        use crate::narrative::Origin;
         let (provenance, told) = match &source.origin {
             None => (Provenance::Unknown, None),
             Some(Origin::Own) => (Provenance::Own, source.records.first().cloned()),

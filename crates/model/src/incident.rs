@@ -1,6 +1,7 @@
 //! Incidents: one crash, and every report of it: versions, copies of other companies, entities, editions of the file.
 
-use crate::record::{CrashRecord, RecordRef};
+use crate::origin::RecordRef;
+use crate::record::CrashRecord;
 use serde::{Deserialize, Serialize};
 
 /// One crash and its reports.

@@ -2,8 +2,7 @@
 //! `eval/accounts.csv`. What suites are built from is [`crate::account::Account`].
 
 use crate::account::{ContactState, CrashType, Driver, FirstContact, Role, Striker};
-use crate::metrics::CollisionKind;
-use crate::narrative::FirstMover;
+use crate::conflict::{CollisionKind, FirstMover};
 use crate::scenario::Approach;
 use crate::template::{Movement, RoadType};
 use crate::zones::ContactZone;

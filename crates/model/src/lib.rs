@@ -10,6 +10,7 @@
 pub mod account;
 pub mod cause;
 pub mod comparison;
+mod conflict;
 pub mod coverage;
 pub mod diagnostic;
 pub mod frozen;
@@ -21,6 +22,7 @@ pub mod labelled;
 pub mod math;
 pub mod metrics;
 pub mod narrative;
+mod origin;
 pub mod polygon;
 pub mod preventability;
 pub mod profile;

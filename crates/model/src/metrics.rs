@@ -1,41 +1,13 @@
 //! Metrics, findings and faithfulness: what a rollout says about the ego, and whether it is true to its record.
 
-use crate::narrative::{FirstMover, Side};
+pub use crate::conflict::CollisionKind;
+
+use crate::conflict::{FirstMover, Side};
 use crate::rollout::TerminationKind;
 use crate::scenario::Approach;
 use crate::template::Template;
 use crate::zones::ContactZone;
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-
-/// Kind of collision by geometry.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum CollisionKind {
-    /// The ego runs into the rear of the partner.
-    RearEndByEgo,
-    /// The partner runs into the rear of the ego.
-    RearEndOfEgo,
-    /// Front to front, on opposite headings.
-    HeadOn,
-    /// Crossing or turning paths: front to side.
-    Angle,
-    /// Side to side, on about the same heading.
-    Sideswipe,
-}
-
-impl CollisionKind {
-    /// For tables and sentences.
-    pub fn label(self) -> &'static str {
-        match self {
-            Self::RearEndByEgo => "rear-end by the ego",
-            Self::RearEndOfEgo => "rear-end of the ego",
-            Self::HeadOn => "head-on",
-            Self::Angle => "angle",
-            Self::Sideswipe => "sideswipe",
-        }
-    }
-}
 
 /// A value and when it was taken.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]

@@ -1,8 +1,11 @@
 //! Narratives: a short text about one conflict, and the facts it states, each with the words it came from.
 
+pub use crate::conflict::{FirstMover, Side};
+pub use crate::origin::Origin;
+
+use crate::conflict::CollisionKind;
 use crate::kinds::PartnerKind;
-use crate::metrics::CollisionKind;
-use crate::record::RecordRef;
+use crate::origin::RecordRef;
 use crate::scenario::{Approach, Author, MissingArm, ObstacleKind};
 use crate::template::{Movement, Template};
 use crate::zones::ContactZone;
@@ -32,54 +35,6 @@ pub struct Narrative {
     pub origin: Origin,
     /// Who wrote it.
     pub author: Author,
-}
-
-/// Whose crash is told.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case", tag = "is", deny_unknown_fields)]
-pub enum Origin {
-    /// The picked record's own.
-    Own,
-    /// Another real record's, which takes the picked one's place.
-    Other {
-        /// The record that is told.
-        record: RecordRef,
-        /// Why the picked one is not.
-        reason: String,
-    },
-    /// Nobody's: a plausible course of the same template.
-    Invented {
-        /// Why no record is told.
-        reason: String,
-    },
-}
-
-impl Origin {
-    /// One word for files and tables: `own`, `other` or `invented`.
-    pub fn name(&self) -> &'static str {
-        match self {
-            Self::Own => "own",
-            Self::Other { .. } => "other",
-            Self::Invented { .. } => "invented",
-        }
-    }
-
-    /// For sentences.
-    pub fn label(&self) -> &'static str {
-        match self {
-            Self::Own => "own record",
-            Self::Other { .. } => "another record",
-            Self::Invented { .. } => "invented",
-        }
-    }
-
-    /// Why the picked record is not told, where it is not.
-    pub fn reason(&self) -> Option<&str> {
-        match self {
-            Self::Own => None,
-            Self::Other { reason, .. } | Self::Invented { reason } => Some(reason),
-        }
-    }
 }
 
 impl Narrative {
@@ -247,16 +202,6 @@ pub enum LanePosition {
     Rightmost,
 }
 
-/// Left or right.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum Side {
-    /// Left.
-    Left,
-    /// Right.
-    Right,
-}
-
 /// A traffic control as one road user sees it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
@@ -273,29 +218,6 @@ pub enum Signal {
     YieldSign,
     /// No control named.
     Uncontrolled,
-}
-
-/// Who reached the place of the conflict first.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum FirstMover {
-    /// The ego.
-    Sv,
-    /// The partner.
-    Cp,
-    /// Both at about the same time.
-    Both,
-}
-
-impl FirstMover {
-    /// For tables and sentences.
-    pub fn words(self) -> &'static str {
-        match self {
-            Self::Sv => "the ego",
-            Self::Cp => "the partner",
-            Self::Both => "both at about the same time",
-        }
-    }
 }
 
 /// A sideways move.

@@ -1,8 +1,8 @@
 //! The system profile: what the system under test and its simulator can express, what is not to be generated, and what
 //! counts as a failure. Another profile gives another suite from the same records.
 
+use crate::conflict::CollisionKind;
 use crate::kinds::PartnerKind;
-use crate::metrics::CollisionKind;
 use crate::template::{Movement, RoadType, Template};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

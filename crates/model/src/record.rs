@@ -1,53 +1,17 @@
 //! Crash records: one version of one report, in SI units, with where it came from.
 
+pub use crate::origin::RecordRef;
+
 use crate::account::{CrashType, Role, Untold};
 use crate::kinds::PartnerKind;
 use crate::surroundings::{Lighting, Surface, Weather};
 use crate::template::{Movement, RoadType, Template};
 use crate::zones::ContactZone;
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// Metres per second in one mile per hour (exact: 1609.344 m / 3600 s).
 pub const MPS_PER_MPH: f64 = 0.447_04;
-
-/// Report id and version, written `30270-7733/2`.
-#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema)]
-#[serde(try_from = "String", into = "String")]
-#[schemars(with = "String")]
-pub struct RecordRef {
-    /// Column `Report ID`.
-    pub report_id: String,
-    /// Column `Report Version`.
-    pub version: u32,
-}
-
-impl std::fmt::Display for RecordRef {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "{}/{}", self.report_id, self.version)
-    }
-}
-
-impl From<RecordRef> for String {
-    fn from(value: RecordRef) -> Self {
-        value.to_string()
-    }
-}
-
-impl TryFrom<String> for RecordRef {
-    type Error = String;
-
-    fn try_from(value: String) -> Result<Self, Self::Error> {
-        let parsed = value.rsplit_once('/').and_then(|(id, version)| Some((id, version.parse().ok()?)));
-        match parsed {
-            Some((report_id, version)) if !report_id.is_empty() => {
-                Ok(Self { report_id: report_id.to_owned(), version })
-            }
-            _ => Err(format!("\"{value}\" is not a record reference; expected REPORT-ID/VERSION, as in 30270-7733/2")),
-        }
-    }
-}
 
 /// A coded value: one we know, or the text of one we do not (kept and listed, never guessed).
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
@@ -378,17 +342,4 @@ pub struct SourceFile {
     pub rows: usize,
     /// SHA-256 of the content, in hexadecimal.
     pub sha256: String,
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn record_references_round_trip() {
-        let parsed: RecordRef = serde_json::from_str("\"30270-7733/2\"").unwrap();
-        assert_eq!(parsed, RecordRef { report_id: "30270-7733".into(), version: 2 });
-        assert_eq!(serde_json::to_string(&parsed).unwrap(), "\"30270-7733/2\"");
-        assert!(serde_json::from_str::<RecordRef>("\"30270-7733\"").is_err());
-    }
 }

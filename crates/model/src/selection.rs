@@ -1,6 +1,6 @@
 //! Selection: which few records stand for all of them, and what that covers.
 
-use crate::record::RecordRef;
+use crate::origin::RecordRef;
 use crate::template::{Movement, RoadType, Template};
 use serde::{Deserialize, Serialize};
 

@@ -6,6 +6,7 @@
 mod batch;
 mod ego;
 mod errors;
+mod host;
 mod reading;
 mod run;
 mod scenario;

@@ -2,8 +2,8 @@
 
 use crate::ego::PythonEgo;
 use crate::errors::{Kind, error, of_library, to_json};
+use crate::host::Host;
 use crate::run::Run;
-use crate::simulator::Host;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString, PyType};
 use recrash_model::profile::SystemProfile;

@@ -1,9 +1,9 @@
 //! Sweeps and searches around scenarios that stand in no file.
 
 use crate::errors::{input, of_library, to_python};
+use crate::host::Host;
 use crate::run::Run;
 use crate::scenario::{Scenario, system_profile};
-use crate::simulator::Host;
 use crate::table::Table;
 use pyo3::prelude::*;
 use recrash_pipeline::{PipelineError, SweepPoints, Vary, tune_scenario};

@@ -1,7 +1,7 @@
 //! Suites: run stage by stage, with progress and Ctrl-C.
 
 use crate::errors::{input, of_library, to_json, to_python};
-use crate::simulator::interpreter;
+use crate::host::interpreter;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use recrash_pipeline::{

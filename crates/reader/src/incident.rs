@@ -1,6 +1,7 @@
 //! Rows of crash files into incidents: versions, copies of other companies, entities and editions of one crash together.
 
-use crate::frame::{Own, story};
+use crate::frame::story;
+use crate::world::Own;
 use recrash_model::hash::Fnv;
 use recrash_model::incident::{Incident, IncidentReport, Telling};
 use recrash_model::record::{CrashRecord, Redaction};

@@ -5,12 +5,12 @@
 //! is not finite is `null`, and the next difference counts from the last finite one. `assets/data.js` reads it back.
 
 use crate::anchor;
-use crate::page::{Context, cluster_map};
+use crate::numbers::{column, short};
 use crate::pairs::{PairView, RunTrace};
-use crate::search;
+use crate::search::{self, ToldRecords};
 use crate::staging;
 use crate::summary::Result as Outcome;
-use crate::view::{CaseRow, CaseView, RunRow, RunView};
+use crate::view::{CaseRow, CaseView, RunRow, RunView, SuiteView};
 use crate::words;
 use recrash_model::geometry::{OrientedBox, Vec2};
 use recrash_model::kinds::PartnerKind;
@@ -18,6 +18,7 @@ use recrash_model::metrics::{Answer, FindingKind, Series};
 use recrash_model::record::CrashRecord;
 use recrash_model::rollout::{ActorState, ActorTrack, EventKind, Role, Rollout, STEP_S};
 use recrash_model::run::JudgedRun;
+use recrash_model::selection::MapPoint;
 use recrash_model::severity::Severity;
 use recrash_model::tuning::TuneLog;
 use recrash_roads::RoadDrawing;
@@ -37,12 +38,12 @@ pub fn embed(value: &Value) -> String {
     text
 }
 
-/// What the scripts need of the suite as a whole.
-pub fn suite(context: &Context) -> Value {
-    let suite = context.suite;
+/// What the scripts need of the suite as a whole: of the record that each case tells, and of the points that have a mark on the map
+/// of the records.
+pub fn suite(suite: &SuiteView, told: &ToldRecords<'_>, marks: &[&MapPoint]) -> Value {
     let records = &suite.records.records;
-    let map: Vec<Value> = cluster_map::shown(suite)
-        .into_iter()
+    let map: Vec<Value> = marks
+        .iter()
         .map(|point| {
             let record = &records[point.record];
             let when = record.when.map_or_else(String::new, |when| when.to_string());
@@ -61,14 +62,14 @@ pub fn suite(context: &Context) -> Value {
         "hardBraking": suite.profile.failure.hard_braking_mps2,
         "map": map,
         "clusters": suite.selection.clusters.iter().map(|cluster| json!([cluster.number, anchor::stem(&cluster.scenario_id)])).collect::<Vec<_>>(),
-        "rows": rows(context),
+        "rows": rows(suite, told),
     })
 }
 
 /// Columns of the table, one value a case.
-fn rows(context: &Context) -> Value {
-    let cases = || context.suite.cases.iter().enumerate();
-    let told = |position: usize| context.told.at(position);
+fn rows(suite: &SuiteView, told: &ToldRecords<'_>) -> Value {
+    let cases = || suite.cases.iter().enumerate();
+    let told = |position: usize| told.at(position);
     let texts = |of: &dyn Fn(&CrashRecord) -> String| {
         let mut names: Vec<String> = Vec::new();
         let of: Vec<Option<usize>> = cases()
@@ -94,18 +95,16 @@ fn rows(context: &Context) -> Value {
         "severity": numbers(&|case| last(case, |run| Some(run.severity.as_ref()?.harm_mps()))),
         "findings": numbers(&|case| last(case, |run| Some(finding_weight(&run.finding_kinds())))),
         "faithful": numbers(&|case| Some(match case.faithful()? { Answer::Yes => 3.0, Answer::Unchecked => 2.0, Answer::No => 1.0 })),
-        "type": types(context),
+        "type": types(&suite.cases),
         "tags": cases().map(|(_, case)| tags(case)).collect::<Vec<_>>(),
         "words": cases().map(|(i, case)| search::words_of(case, told(i))).collect::<Vec<_>>(),
     })
 }
 
 /// Crash types: their names, and which each case is of.
-fn types(context: &Context) -> Value {
+fn types(cases: &[CaseRow]) -> Value {
     let mut names: Vec<String> = Vec::new();
-    let of: Vec<Option<usize>> = context
-        .suite
-        .cases
+    let of: Vec<Option<usize>> = cases
         .iter()
         .map(|case| Some(index_of(&mut names, case.account.as_ref()?.crash_type.label().to_owned())))
         .collect();
@@ -388,36 +387,9 @@ fn index_of<T: PartialEq>(list: &mut Vec<T>, item: T) -> usize {
     })
 }
 
-/// Differences of whole numbers.
-fn column(values: impl Iterator<Item = f64>, scale: f64) -> Value {
-    let mut last = 0_i64;
-    let difference = |value: f64| {
-        if !value.is_finite() {
-            return Value::Null;
-        }
-        let now = (value * scale).round() as i64;
-        let step = now.saturating_sub(last);
-        last = now;
-        Value::from(step)
-    };
-    Value::Array(values.map(difference).collect())
-}
-
-/// A number with so many decimals at most; `null` where it is not finite.
-pub(crate) fn short(value: f64, decimals: usize) -> Value {
-    words::fixed(value, decimals).and_then(|text| text.parse::<f64>().ok()).map_or(Value::Null, |number| {
-        if number == number.trunc() && number.abs() < 1e15 { Value::from(number as i64) } else { Value::from(number) }
-    })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn columns_hold_differences_and_skip_what_is_not_finite() {
-        assert_eq!(column([1.0, 1.002, f64::NAN, 0.5].into_iter(), 1000.0), json!([1000, 2, null, -502]));
-    }
 
     #[test]
     fn embedded_json_cannot_leave_its_element() {

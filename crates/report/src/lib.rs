@@ -11,6 +11,7 @@ mod anchor;
 pub mod comparison;
 mod data;
 mod junit;
+mod numbers;
 mod page;
 mod pairs;
 mod picture;

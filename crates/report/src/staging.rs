@@ -1,7 +1,7 @@
 //! What a replay shows besides who drives where: signals and signs at their stop lines, when the system under test takes
 //! over, and where the ego's task has it stop.
 
-use crate::data::short;
+use crate::numbers::short;
 use crate::words;
 use recrash_model::geometry::Vec2;
 use recrash_model::run::JudgedRun;

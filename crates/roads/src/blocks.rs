@@ -3,8 +3,9 @@
 //! Every block is drawn in the frame of an arm: the origin is the end of the rightmost lane that leads into the block,
 //! x points into it, y to the left. Measures are those of MetaDrive 0.4.3, see `docs/models/roads.md`.
 
-use crate::lane::{Centreline, Lane, LaneId};
-use crate::network::{NamedRoad, Road, RoadId, RoadNetwork, RoadPart};
+use crate::centreline::Centreline;
+use crate::lane::{Lane, LaneId, RoadId};
+use crate::network::{NamedRoad, Road, RoadNetwork, RoadPart, followers};
 use recrash_model::geometry::Vec2;
 use recrash_model::math;
 use recrash_model::narrative::Side;
@@ -53,7 +54,7 @@ pub(crate) fn build(map: &MapSpec) -> RoadNetwork {
         MapSpec::O(m) => builder.roundabout(approach.end, m),
         MapSpec::G(_) => unreachable!("a network of roads is no block"),
     }
-    builder.network.followers = crate::ways::followers(&builder.network.lanes, |_| true, |_| true);
+    builder.network.followers = followers(&builder.network.lanes, |_| true, |_| true);
     name_roads(&mut builder.network);
     builder.network
 }
@@ -95,8 +96,21 @@ fn name_roads(network: &mut RoadNetwork) {
     }
 }
 
+impl RoadNetwork {
+    /// The roads a vehicle takes that comes from `approach` and turns `turn` (seen from itself), from the very
+    /// beginning of its arm to the very end of its exit; `None` where the map has no such way.
+    ///
+    /// [`Approach::Ring`] begins right behind the exit to the left arm ([`Turn::Left`]: a connector later, or it would
+    /// pass a node twice); it passes the ego's entry and leaves by the exit right behind it ([`Turn::Right`]), the one
+    /// after that ([`Turn::Straight`]) or the third ([`Turn::Left`]).
+    pub fn route(&self, approach: Approach, turn: Turn) -> Option<Vec<RoadId>> {
+        let nodes = route_nodes(&self.map, approach, turn)?;
+        nodes.windows(2).map(|pair| self.road_between(&pair[0], &pair[1])).collect()
+    }
+}
+
 /// The nodes of a way through the map, or `None` where the map has no such way.
-pub(crate) fn route_nodes(map: &MapSpec, approach: Approach, turn: Turn) -> Option<Vec<String>> {
+fn route_nodes(map: &MapSpec, approach: Approach, turn: Turn) -> Option<Vec<String>> {
     match map {
         MapSpec::S(_) => road_nodes(approach, turn, &["1S0_0_"]),
         MapSpec::C(_) => road_nodes(approach, turn, &["1C0_0_", "1C0_1_"]),

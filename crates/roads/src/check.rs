@@ -9,6 +9,7 @@ mod motion;
 mod numbers;
 mod obstacles;
 mod places;
+mod remarks;
 
 pub use actors::arm_m;
 
@@ -19,6 +20,7 @@ use recrash_model::rollout::EGO_ID;
 use recrash_model::scenario::{MapSpec, ScenarioDraft};
 use recrash_model::vehicle::VehicleSpec;
 use recrash_model::{Diagnostic, Outcome};
+use remarks::Remarks;
 use std::sync::Arc;
 
 /// Checks a draft. Gives every problem at once, each with its JSON path, the value, what is allowed and a hint.
@@ -161,35 +163,4 @@ fn everybody(
         }
     }
     all
-}
-
-/// A JSON path, which is written out only where there is something to say of it.
-type At<'a> = std::fmt::Arguments<'a>;
-
-/// The diagnostics of one check.
-#[derive(Default)]
-struct Remarks {
-    list: Vec<Diagnostic>,
-}
-
-impl Remarks {
-    fn error(&mut self, code: &str, path: impl Into<String>, message: impl Into<String>, hint: impl Into<String>) {
-        self.list.push(Diagnostic::error_at(code, path, message).with_hint(hint));
-    }
-
-    fn warn(&mut self, code: &str, path: impl Into<String>, message: impl Into<String>, hint: impl Into<String>) {
-        self.list.push(Diagnostic::warning_at(code, path, message).with_hint(hint));
-    }
-}
-
-/// A number for a message: at most three decimals, as short as possible.
-fn shown(value: f64) -> String {
-    if !value.is_finite() {
-        return format!("{value}");
-    }
-    if value != 0.0 && !(1e-3..1e9).contains(&value.abs()) {
-        return format!("{value:e}");
-    }
-    let text = format!("{value:.3}");
-    text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }

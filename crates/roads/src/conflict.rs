@@ -1,9 +1,12 @@
 //! Where two paths meet: crossings of lines and circles, and merges into one lane.
 
+use crate::centreline::SegmentShape;
 use crate::lane::LaneId;
-use crate::path::{Conflict, LanePath, PathSegment, SegmentShape};
+use crate::path::{LanePath, PathSegment};
 use recrash_model::geometry::Vec2;
+use recrash_model::kinds::PartnerKind;
 use recrash_model::math;
+use recrash_model::vehicle::VehicleSpec;
 
 /// Crossings this near to a place where paths part or join are that place: the curves are tangent there, and the last
 /// bits of their parameters decide where the intersection falls. [m]
@@ -15,8 +18,66 @@ const MARCH_M: f64 = 0.25;
 /// Halvings of a march step: 0.25 m / 2^40 is below 1e-12 m.
 const HALVINGS: usize = 40;
 
+/// Room left on both sides of a stretch where two vehicles can touch. [m]
+const REACH_MARGIN_M: f64 = 0.5;
+
+/// Where two paths meet: the first place where vehicles following them would touch.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Conflict {
+    /// Along the first path. [m]
+    pub s_a: f64,
+    /// Along the second path. [m]
+    pub s_b: f64,
+    /// Where the centre lines cross, or come within touching distance for good when they merge.
+    pub point: Vec2,
+    /// Whether the paths merge into one lane, rather than cross.
+    pub merges: bool,
+}
+
+/// Length and width of a vehicle. [m]
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Footprint {
+    /// Length. [m]
+    pub length_m: f64,
+    /// Width. [m]
+    pub width_m: f64,
+}
+
+impl Footprint {
+    /// That of a kind of road user.
+    pub const fn of(kind: PartnerKind) -> Self {
+        let spec = VehicleSpec::of(kind);
+        Self { length_m: spec.length_m, width_m: spec.width_m }
+    }
+}
+
+impl Conflict {
+    /// How far before the conflict, and behind it where the paths cross, the centre of each vehicle can touch the other: half
+    /// of the other's width cut at an angle, and half of its own length (`docs/models/policies.md`). [m]
+    pub fn reaches(&self, a: (&LanePath, Footprint), b: (&LanePath, Footprint)) -> (f64, f64) {
+        let angle = a.0.pose(self.s_a, 0.0).heading - b.0.pose(self.s_b, 0.0).heading;
+        let (sin, cos) = math::sincos(angle);
+        let (sin, cos) = (sin.abs().max(0.5), cos.abs());
+        let reach = |mine: Footprint, theirs: Footprint| {
+            0.5 * mine.length_m + 0.5 * (theirs.width_m + mine.width_m * cos) / sin + REACH_MARGIN_M
+        };
+        (reach(a.1, b.1), reach(b.1, a.1))
+    }
+}
+
+impl LanePath {
+    /// The first conflict with another path, for vehicles of these widths. [m]
+    ///
+    /// What both paths share from their very beginning is not a conflict: vehicles there follow each other. Behind it,
+    /// the first of: a crossing of the centre lines (exact, from lines and circles), and the place from which on this
+    /// path stays within `(width + other_width) / 2` of the other until both go on in one lane.
+    pub fn conflict(&self, other: &Self, width: f64, other_width: f64) -> Option<Conflict> {
+        first_conflict(self, other, 0.5 * (width + other_width))
+    }
+}
+
 /// The first conflict, see [`LanePath::conflict`]; `touching` is half the sum of the widths. [m]
-pub(crate) fn first_conflict(a: &LanePath, b: &LanePath, touching: f64) -> Option<Conflict> {
+fn first_conflict(a: &LanePath, b: &LanePath, touching: f64) -> Option<Conflict> {
     let shared = a.segments.iter().zip(&b.segments).take_while(|(x, y)| x.lane == y.lane).count();
     if shared == a.segments.len() || shared == b.segments.len() {
         return None;

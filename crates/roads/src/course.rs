@@ -3,9 +3,10 @@
 //! `s` counts from the start in the direction of motion; in reverse gear the road user faces against it. What lies beside
 //! the line is counted to the right of the road user. Equations: `docs/models/acts.md`.
 
-use crate::graph::{Stretch, biarc};
-use crate::lane::{Centreline, LaneId};
-use crate::path::{LanePath, PathSegment, SegmentShape};
+use crate::centreline::{Centreline, SegmentShape};
+use crate::curve::{Stretch, biarc};
+use crate::lane::LaneId;
+use crate::path::{LanePath, PathSegment};
 use recrash_model::geometry::{Pose, Vec2};
 use recrash_model::math;
 

@@ -2,7 +2,8 @@
 
 mod graph;
 
-use crate::lane::{Centreline, Lane};
+use crate::centreline::Centreline;
+use crate::lane::Lane;
 use crate::network::{Road, RoadNetwork, RoadPart};
 use recrash_model::geometry::Vec2;
 use recrash_model::math;

@@ -1,8 +1,7 @@
 //! Lanes: a straight or circular centre line with a width.
 
-use crate::graph::Stretch;
-use crate::network::RoadId;
-use crate::path::SegmentShape;
+use crate::centreline::{Centreline, SegmentShape};
+use crate::curve::Stretch;
 use recrash_model::geometry::{Pose, Vec2};
 use recrash_model::math;
 
@@ -10,38 +9,9 @@ use recrash_model::math;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct LaneId(pub u16);
 
-/// A centre line.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Centreline {
-    /// A straight line.
-    Straight {
-        /// Beginning. [m]
-        start: Vec2,
-        /// Heading. [rad]
-        heading: f64,
-    },
-    /// A circular arc.
-    Arc {
-        /// Centre of the circle. [m]
-        centre: Vec2,
-        /// Radius. [m]
-        radius: f64,
-        /// Angle of the beginning, seen from the centre. [rad]
-        start_angle: f64,
-        /// +1 anticlockwise (a left curve), -1 clockwise.
-        turn: f64,
-    },
-}
-
-impl Centreline {
-    /// Its heading at s, in (-pi, pi]. [rad]
-    pub fn heading(&self, s: f64) -> f64 {
-        math::wrap_angle(match *self {
-            Self::Straight { heading, .. } => heading,
-            Self::Arc { radius, start_angle, turn, .. } => start_angle + turn * (s / radius + math::FRAC_PI_2),
-        })
-    }
-}
+/// Position of a road in [`crate::RoadNetwork::roads`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct RoadId(pub u16);
 
 /// A lane.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -157,5 +127,12 @@ impl Lane {
             },
         };
         Self { centreline, width_m: self.end_width_m, end_width_m: self.width_m, ..*self }
+    }
+}
+
+impl SegmentShape {
+    /// That of a lane.
+    pub fn of(lane: &Lane) -> Self {
+        Self::of_line(&lane.centreline, lane.length_m)
     }
 }

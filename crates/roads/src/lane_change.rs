@@ -1,10 +1,12 @@
 //! Changes of lanes on a path: an S of two arcs from one lane to the one beside it.
 
-use crate::graph::biarc;
+use crate::curve::biarc;
 use crate::lane::{Lane, LaneId};
 use crate::network::{RoadNetwork, RoadPart};
-use crate::ways::HALF_CHANGE_M;
 use recrash_model::geometry::Pose;
+
+/// A change of lanes is done within this distance before and behind its middle, where there is room. [m]
+pub(crate) const HALF_CHANGE_M: f64 = 15.0;
 
 /// The lines of a path along lanes, with the lane each belongs to.
 pub(crate) fn pieces(network: &RoadNetwork, lanes: &[LaneId]) -> Vec<(LaneId, Lane)> {

@@ -1,15 +1,17 @@
 //! The road network of a map: nodes, roads between them, lanes on them; node for node MetaDrive's.
 
-use crate::graph::{GroundArea, ReferenceLine};
-use crate::lane::{Lane, LaneId};
-use recrash_model::Diagnostic;
+use crate::ground::GroundArea;
+use crate::lane::{Lane, LaneId, RoadId};
+use crate::reference_line::ReferenceLine;
 use recrash_model::geometry::Vec2;
 use recrash_model::math;
-use recrash_model::scenario::{Approach, MapSpec, StripKind, Turn};
+use recrash_model::scenario::{MapSpec, StripKind};
+use std::collections::BTreeMap;
 
-/// Position of a road in [`RoadNetwork::roads`].
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct RoadId(pub u16);
+/// A lane follows another where it begins this near to its end, and leads on the same way. [m]
+const JOINT_M: f64 = 0.1;
+/// See [`JOINT_M`]. [rad]
+const JOINT_RAD: f64 = 5.0 / 180.0 * math::PI;
 
 /// What a road is to the map.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -78,26 +80,6 @@ pub struct RoadNetwork {
 }
 
 impl RoadNetwork {
-    /// Builds the network of a map that is known to be sound: a block of the paper whose numbers are in range, or what
-    /// [`crate::check()`] has let through.
-    ///
-    /// # Panics
-    /// Where [`Self::try_build`] finds a problem.
-    pub fn build(map: &MapSpec) -> Self {
-        Self::try_build(map).expect("the map is sound")
-    }
-
-    /// Builds the network. The numbers of `map` must be in range (see [`crate::check()`]).
-    ///
-    /// # Errors
-    /// What is wrong with a network of roads, each with its JSON path.
-    pub fn try_build(map: &MapSpec) -> Result<Self, Vec<Diagnostic>> {
-        match map {
-            MapSpec::G(map) => crate::graph::build(map),
-            _ => Ok(crate::blocks::build(map)),
-        }
-    }
-
     /// A lane.
     pub fn lane(&self, id: LaneId) -> &Lane {
         &self.lanes[usize::from(id.0)]
@@ -112,17 +94,6 @@ impl RoadNetwork {
     pub fn road_between(&self, from: &str, to: &str) -> Option<RoadId> {
         let position = self.roads.iter().position(|road| road.from == from && road.to == to)?;
         u16::try_from(position).ok().map(RoadId)
-    }
-
-    /// The roads a vehicle takes that comes from `approach` and turns `turn` (seen from itself), from the very
-    /// beginning of its arm to the very end of its exit; `None` where the map has no such way.
-    ///
-    /// [`Approach::Ring`] begins right behind the exit to the left arm ([`Turn::Left`]: a connector later, or it would
-    /// pass a node twice); it passes the ego's entry and leaves by the exit right behind it ([`Turn::Right`]), the one
-    /// after that ([`Turn::Straight`]) or the third ([`Turn::Left`]).
-    pub fn route(&self, approach: Approach, turn: Turn) -> Option<Vec<RoadId>> {
-        let nodes = crate::blocks::route_nodes(&self.map, approach, turn)?;
-        nodes.windows(2).map(|pair| self.road_between(&pair[0], &pair[1])).collect()
     }
 
     /// The lane a point lies on: of those whose direction is within 90 degrees of `heading` the one that fits best (the
@@ -158,4 +129,35 @@ impl RoadNetwork {
     pub fn area(&self, name: &str) -> Option<&GroundArea> {
         self.areas.iter().find(|area| area.name == name)
     }
+}
+
+/// The lanes that follow each lane: those of `starts` that begin where it ends, and lead on the same way. [`JOINT_M`]
+pub(crate) fn followers(
+    lanes: &[Lane],
+    ends: impl Fn(usize) -> bool,
+    starts: impl Fn(usize) -> bool,
+) -> Vec<Vec<LaneId>> {
+    let cell = |point: Vec2| ((point.x / JOINT_M).floor() as i64, (point.y / JOINT_M).floor() as i64);
+    let mut near: BTreeMap<(i64, i64), Vec<usize>> = BTreeMap::new();
+    for (index, lane) in lanes.iter().enumerate().filter(|(index, _)| starts(*index)) {
+        near.entry(cell(lane.position(0.0, 0.0))).or_default().push(index);
+    }
+    let follows = |lane: &Lane| {
+        let (end, heading) = (lane.position(lane.length_m, 0.0), lane.heading(lane.length_m));
+        let (x, y) = cell(end);
+        let cells = (x - 1..=x + 1).flat_map(|x| (y - 1..=y + 1).map(move |y| (x, y)));
+        let mut list: Vec<LaneId> = cells
+            .filter_map(|key| near.get(&key))
+            .flatten()
+            .filter(|index| {
+                let other = &lanes[**index];
+                other.position(0.0, 0.0).distance(end) <= JOINT_M
+                    && math::wrap_angle(other.heading(0.0) - heading).abs() <= JOINT_RAD
+            })
+            .filter_map(|index| u16::try_from(*index).ok().map(LaneId))
+            .collect();
+        list.sort_unstable();
+        list
+    };
+    lanes.iter().enumerate().map(|(index, lane)| if ends(index) { follows(lane) } else { Vec::new() }).collect()
 }

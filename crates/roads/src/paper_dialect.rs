@@ -3,7 +3,7 @@
 //! The paper (Parashar and Fan) names the variables, not a file layout. Read here are its names, flat or with the crash
 //! partners in a list; what it leaves open is filled with MetaDrive's defaults, and one note says with what.
 
-use crate::read::{Parts, brief, policy};
+use crate::json_parts::{Parts, brief, policy};
 use recrash_model::Diagnostic;
 use recrash_model::kinds::PartnerKind;
 use recrash_model::scenario::{

@@ -1,10 +1,11 @@
 //! Checked scenarios: everything resolved, so that the simulator cannot fail.
 
+use crate::conflict::Conflict;
 use crate::course::{Course, StopLine};
 use crate::drawing::{LineKind, RoadDrawing, RoadLine};
 use crate::lane::LaneId;
 use crate::network::RoadNetwork;
-use crate::path::{Conflict, LanePath};
+use crate::path::LanePath;
 use recrash_model::geometry::Pose;
 use recrash_model::kinds::PartnerKind;
 use recrash_model::rollout::PlacedObstacle;

@@ -4,7 +4,8 @@
 //! stands until the ego enters the road that leads to the block. It is placed here, so that every simulator gets the
 //! same vehicles in the same places. See `docs/models/policies.md`.
 
-use crate::network::{RoadId, RoadPart};
+use crate::lane::RoadId;
+use crate::network::RoadPart;
 use crate::path::LanePath;
 use crate::scenario::Scenario;
 use recrash_model::Seed;

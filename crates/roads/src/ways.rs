@@ -1,27 +1,18 @@
 //! Ways: from lane to lane along named roads, by the shortest connections.
 
-use crate::lane::{Lane, LaneId};
+use crate::lane::LaneId;
+use crate::lane_change::HALF_CHANGE_M;
 use crate::network::{RoadNetwork, RoadPart};
 use crate::path::LanePath;
 use crate::place::PlaceError;
-use recrash_model::geometry::Vec2;
-use recrash_model::math;
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BinaryHeap};
-
-/// A lane follows another where it begins this near to its end, and leads on the same way. [m]
-const JOINT_M: f64 = 0.1;
-/// See [`JOINT_M`]. [rad]
-const JOINT_RAD: f64 = 5.0 / 180.0 * math::PI;
 
 /// A change of lanes counts like so many metres: a way round a block is longer, and one that keeps its lane is preferred.
 const CHANGE_M: f64 = 50.0;
 
 /// A lane that is changed into is at least this wide there. [m]
 const CHANGE_WIDTH_M: f64 = 2.0;
-
-/// A change of lanes is done within this distance before and behind its middle, where there is room. [m]
-pub(crate) const HALF_CHANGE_M: f64 = 15.0;
 
 /// How many of the roads behind the first have been entered, and the lane.
 type Stage = (usize, LaneId);
@@ -32,37 +23,6 @@ struct Wish<'a> {
     roads: &'a [usize],
     lane: Option<u8>,
     last_lane: Option<u8>,
-}
-
-/// The lanes that follow each lane: those of `starts` that begin where it ends, and lead on the same way. [`JOINT_M`]
-pub(crate) fn followers(
-    lanes: &[Lane],
-    ends: impl Fn(usize) -> bool,
-    starts: impl Fn(usize) -> bool,
-) -> Vec<Vec<LaneId>> {
-    let cell = |point: Vec2| ((point.x / JOINT_M).floor() as i64, (point.y / JOINT_M).floor() as i64);
-    let mut near: BTreeMap<(i64, i64), Vec<usize>> = BTreeMap::new();
-    for (index, lane) in lanes.iter().enumerate().filter(|(index, _)| starts(*index)) {
-        near.entry(cell(lane.position(0.0, 0.0))).or_default().push(index);
-    }
-    let follows = |lane: &Lane| {
-        let (end, heading) = (lane.position(lane.length_m, 0.0), lane.heading(lane.length_m));
-        let (x, y) = cell(end);
-        let cells = (x - 1..=x + 1).flat_map(|x| (y - 1..=y + 1).map(move |y| (x, y)));
-        let mut list: Vec<LaneId> = cells
-            .filter_map(|key| near.get(&key))
-            .flatten()
-            .filter(|index| {
-                let other = &lanes[**index];
-                other.position(0.0, 0.0).distance(end) <= JOINT_M
-                    && math::wrap_angle(other.heading(0.0) - heading).abs() <= JOINT_RAD
-            })
-            .filter_map(|index| u16::try_from(*index).ok().map(LaneId))
-            .collect();
-        list.sort_unstable();
-        list
-    };
-    lanes.iter().enumerate().map(|(index, lane)| if ends(index) { follows(lane) } else { Vec::new() }).collect()
 }
 
 impl RoadNetwork {

@@ -2,10 +2,10 @@
 
 use crate::SelectOptions;
 use crate::coverage::{coverage, stage_tables};
+use crate::group::Group;
 use crate::matrix::{distance, squared_distance};
 use crate::pca::principal_components;
 use crate::space::ClusteringSpace;
-use crate::strategy::Group;
 use recrash_model::hash::Fnv;
 use recrash_model::profile::SystemProfile;
 use recrash_model::record::{RecordRef, RecordSet};

@@ -1,8 +1,8 @@
 //! What the picks cover, and the tables of the usable records.
 
+use crate::group::Group;
 use crate::matrix::distance;
 use crate::space::ClusteringSpace;
-use crate::strategy::Group;
 use recrash_model::profile::SystemProfile;
 use recrash_model::selection::{Coverage, PairCoverage, StageTables, ValuePair};
 use recrash_model::template::Template;

@@ -14,6 +14,7 @@ mod coverage;
 mod eigen;
 mod embedding;
 mod greedy;
+mod group;
 mod kmeans;
 mod lexical;
 mod matrix;

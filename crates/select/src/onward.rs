@@ -1,7 +1,7 @@
 //! Going on from an earlier choice: when records come in, the picks there are stay, and so does all that was made of them.
 
+use crate::group::{Group, join_nearest};
 use crate::space::ClusteringSpace;
-use crate::strategy::{Group, join_nearest};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The groups of an earlier choice with the records of today; `None` where it no longer holds and has to be made anew: a pick

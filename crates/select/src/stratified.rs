@@ -3,9 +3,9 @@
 use crate::SelectOptions;
 use crate::apportion::next_by_equal_proportions;
 use crate::greedy::k_center;
+use crate::group::{Group, groups_by_kmeans, join_nearest};
 use crate::matrix::{Matrix, distance};
 use crate::space::{ClusteringSpace, ObservedTemplate};
-use crate::strategy::{Group, groups_by_kmeans, join_nearest};
 use std::collections::BTreeSet;
 
 /// Groups of all rows. While the budget lasts:

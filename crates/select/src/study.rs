@@ -2,9 +2,10 @@
 
 use crate::assemble::inertia;
 use crate::coverage::coverage;
+use crate::group::Group;
 use crate::matrix::{Matrix, distance};
 use crate::space::ClusteringSpace;
-use crate::strategy::{Group, choose};
+use crate::strategy::choose;
 use crate::{Embedding, SelectError, SelectOptions};
 use recrash_model::profile::SystemProfile;
 use recrash_model::record::RecordSet;

@@ -1,14 +1,13 @@
 //! Who touches whom.
 
-use crate::chassis::Controls;
 use crate::impact;
 use crate::movement::{Loose, Mover};
 use crate::scene::Seen;
-use crate::world::{Setting, State, Workspace};
-use recrash_model::geometry::{OrientedBox, Pose, Vec2};
+use crate::world::{Setting, State, Workspace, actor_state};
+use recrash_model::geometry::OrientedBox;
 use recrash_model::kinds::PartnerKind;
 use recrash_model::math;
-use recrash_model::rollout::{ActorState, Event, EventKind, STEP_S};
+use recrash_model::rollout::{Event, EventKind, STEP_S};
 
 /// A thing lighter than this share of who hits it does not put that one off its way; assumed.
 const LIGHT: f64 = 0.05;
@@ -158,18 +157,5 @@ fn push(setting: &Setting, state: &mut State, a: usize, b: usize) {
         }
         state.loose[actor] = Loose { pose: state.bodies[actor].pose, ..after };
         state.movers[actor] = Mover::Momentum;
-    }
-}
-
-/// A state as it is recorded.
-pub(crate) fn actor_state(pose: Pose, velocity: Vec2, controls: Controls) -> ActorState {
-    ActorState {
-        x: pose.position.x,
-        y: pose.position.y,
-        heading: math::wrap_angle(pose.heading),
-        vx: velocity.x,
-        vy: velocity.y,
-        steer: controls.steer,
-        throttle: controls.throttle,
     }
 }

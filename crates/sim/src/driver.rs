@@ -3,8 +3,8 @@
 //! The simulator stays free of processes and clocks; whoever implements [`EgoDriver`] may ask a program, a network or a
 //! person. Such a driver may fail, and then the run ends with its error.
 
+use crate::cast::CastMember;
 use crate::chassis::Controls;
-use crate::recorder::CastMember;
 use crate::scene::Seen;
 use recrash_model::geometry::Vec2;
 use recrash_model::rollout::{ActorState, Termination};

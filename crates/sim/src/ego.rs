@@ -1,4 +1,4 @@
-//! Which driver the subject vehicle gets.
+//! Which driver the subject vehicle gets: one of the simulator's own, or somebody outside.
 
 use std::fmt;
 use std::str::FromStr;
@@ -41,6 +41,15 @@ impl fmt::Display for Ego {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(self.name())
     }
+}
+
+/// Who sits in the ego's seat.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Seat {
+    /// A driver of the simulator's own.
+    BuiltIn(Ego),
+    /// Whoever gives the controls to [`crate::Run::step`].
+    Outside,
 }
 
 /// No ego of that name.

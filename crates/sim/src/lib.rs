@@ -13,6 +13,7 @@
 //!
 //! What this crate does **not** do: it never sees a crash record, opens no file, reads no clock and starts no thread.
 
+mod cast;
 mod chassis;
 mod contacts;
 mod driver;
@@ -36,14 +37,15 @@ mod steering;
 mod swerve;
 mod world;
 
+pub use cast::CastMember;
 pub use chassis::{Chassis, Controls, PHYSICS_STEP_S, VehicleState, WheelCommand};
 pub use driver::{EgoDriver, Observation};
-pub use ego::{Ego, UnknownEgo};
+pub use ego::{Ego, Seat, UnknownEgo};
 pub use emergency::EmergencyResponse;
 pub use idm::IdmParameters;
 pub use native::Native;
-pub use recorder::{CastMember, Recorder, RolloutRecorder, Summary, SummaryRecorder};
-pub use run::{Run, Seat, Snapshot};
+pub use recorder::{Recorder, RolloutRecorder, Summary, SummaryRecorder};
+pub use run::{Run, Snapshot};
 pub use runner::Runner;
 
 use recrash_model::rollout::Rollout;

@@ -1,7 +1,7 @@
 //! The native simulator behind the door that all simulators have.
 
 use crate::ego::Ego;
-use crate::recorder::RolloutRecorder;
+use crate::recorder::{self, RolloutRecorder};
 use crate::runner::Runner;
 use recrash_model::rollout::{Rollout, Substeps};
 use recrash_roads::{RunError, Scenario, Simulator};
@@ -17,10 +17,10 @@ pub struct Native {
 
 impl Native {
     /// Its name in rollouts.
-    pub const NAME: &'static str = "native";
+    pub const NAME: &'static str = recorder::NAME;
 
     /// Its version in rollouts.
-    pub const VERSION: &'static str = env!("CARGO_PKG_VERSION");
+    pub const VERSION: &'static str = recorder::VERSION;
 
     /// With this ego.
     pub const fn new(ego: Ego) -> Self {

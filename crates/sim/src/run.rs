@@ -22,13 +22,13 @@
 //! }
 //! ```
 
+use crate::cast::CastMember;
 use crate::chassis::{Controls, VehicleState};
 use crate::contacts::{collide, find_near};
 use crate::driver::Observation;
-use crate::ego::Ego;
+use crate::ego::Seat;
 use crate::halts;
 use crate::movement::Mover;
-use crate::recorder::CastMember;
 use crate::scene::Scene;
 use crate::world::{Driver, Setting, State, Workspace, prepare};
 use recrash_model::geometry::Vec2;
@@ -46,15 +46,6 @@ const ARRIVAL_RANGE_M: f64 = 5.0;
 /// Steps in a second. A time is a count divided by this (or by physics steps in a second), which gives the nearest number to
 /// the decimal that people read.
 const STEPS_PER_S: f64 = 10.0;
-
-/// Who sits in the ego's seat.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Seat {
-    /// A driver of the simulator's own.
-    BuiltIn(Ego),
-    /// Whoever gives the controls to [`Run::step`].
-    Outside,
-}
 
 /// One run of one scenario, at one time.
 ///
@@ -466,6 +457,7 @@ fn pedal_mps2(kind: recrash_model::kinds::PartnerKind, throttle: f64, speed_mps:
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::ego::Ego;
     use crate::lanes::LaneIndex;
     use recrash_model::scenario::MapSpec;
     use recrash_plan::metadrive::{NO_HANDOVER, Run as Told};

@@ -2,9 +2,9 @@
 
 use crate::chassis::Controls;
 use crate::driver::{EgoDriver, Observation};
-use crate::ego::Ego;
+use crate::ego::{Ego, Seat};
 use crate::recorder::Recorder;
-use crate::run::{Run, Seat};
+use crate::run::Run;
 use recrash_model::rollout::{Substeps, Termination};
 use recrash_roads::Scenario;
 use std::convert::Infallible;

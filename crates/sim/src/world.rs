@@ -1,19 +1,18 @@
 //! The parts of a run: what is fixed in it, what is true at a time, and scratch; and how they are put together.
 
+use crate::cast::CastMember;
 use crate::chassis::{Chassis, Controls, VehicleState, WheelCommand};
-use crate::contacts::actor_state;
-use crate::ego::Ego;
+use crate::ego::{Ego, Seat};
 use crate::idm::Idm;
 use crate::lanes::{LaneIndex, LaneTable, Navigator, Progress};
 use crate::metadrive_idm::MetadriveIdm;
 use crate::movement::{Loose, Mover};
-use crate::recorder::CastMember;
 use crate::reference::{Attention, Reference};
-use crate::run::Seat;
 use crate::scene::{Seen, SeenObstacle};
 use crate::script::Script;
 use recrash_model::geometry::{Pose, Vec2};
 use recrash_model::kinds::PartnerKind;
+use recrash_model::math;
 use recrash_model::rollout::{ActorState, Event, Role, Substeps, Termination};
 use recrash_model::scenario::{Aspect, Device, MissionStop, Part, Policy};
 use recrash_model::surroundings::Surface;
@@ -575,5 +574,18 @@ impl State {
         self.signals.clear();
         self.errand = Errand::default();
         self.contact_s = f64::INFINITY;
+    }
+}
+
+/// A state as it is recorded.
+pub(crate) fn actor_state(pose: Pose, velocity: Vec2, controls: Controls) -> ActorState {
+    ActorState {
+        x: pose.position.x,
+        y: pose.position.y,
+        heading: math::wrap_angle(pose.heading),
+        vx: velocity.x,
+        vy: velocity.y,
+        steer: controls.steer,
+        throttle: controls.throttle,
     }
 }

@@ -1,9 +1,13 @@
 //! A provider's fault, as this program acts on it.
 
 use crate::llm::access::LiveOptions;
-use crate::llm::live::{CONNECT_S, MOST_BYTES};
 use serde_json::Value;
 use ureq::http::{HeaderMap, Uri};
+
+/// Longest time until a connection stands. [s]
+pub const CONNECT_S: f64 = 4.0;
+/// Most that is read of an answer; one of 16 000 tokens has 100 kB, with its thoughts perhaps ten times that. [bytes]
+pub const MOST_BYTES: u64 = 4 << 20;
 
 /// Longest text of a provider's that is passed on. [characters]
 const LONGEST_TEXT: usize = 240;

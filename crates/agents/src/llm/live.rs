@@ -8,7 +8,7 @@
 
 use crate::llm::access::LiveOptions;
 use crate::llm::answers::{Answers, AskError, Ledger};
-use crate::llm::fault::{self, Fault};
+use crate::llm::fault::{self, CONNECT_S, Fault, MOST_BYTES};
 use crate::llm::prompts;
 use crate::llm::providers::{Provider, provider};
 use crate::llm::question::{Asked, EXCHANGE_FORMAT, Exchange, Question, bounded_answer};
@@ -22,14 +22,10 @@ use std::time::{Duration, Instant};
 use ureq::Agent;
 use ureq::http::Uri;
 
-/// Longest time until a connection stands. [s]
-pub const CONNECT_S: f64 = 4.0;
 /// Longest wait that a provider may ask for; past it, the question is given up. [s]
 const LONGEST_WAIT_S: f64 = 120.0;
 /// First wait after a passing fault; each further one is twice as long. [s]
 const FIRST_WAIT_S: f64 = 1.0;
-/// Most that is read of an answer; one of 16 000 tokens has 100 kB, with its thoughts perhaps ten times that. [bytes]
-pub const MOST_BYTES: u64 = 4 << 20;
 /// Most that is read of an error. [bytes]
 const MOST_ERROR_BYTES: u64 = 1 << 16;
 /// Anthropic's protocol as it is spoken here.

@@ -3,7 +3,7 @@
 use super::limits::LEAST_TOLD_SPEED_MPS;
 use super::reading::{Reading, Relation, read, reading_of_account, side_from_zones};
 use super::staging::{ConflictKind, Ground, KNOWN, Staging, fits_three_way, ground, stagings};
-use super::writing::{self, Facts};
+use super::writing::{self, Facts, offset_side};
 use crate::{AgentError, Brief, narrative_contradictions};
 use recrash_model::account::Account;
 use recrash_model::kinds::PartnerKind;
@@ -259,15 +259,6 @@ fn complete(told: Told, brief: &Brief, diagnostics: &mut Vec<Diagnostic>) -> Vec
         facts.push(assumed(FactValue::Collision { kind }, "follows from how the paths meet".to_owned()));
     }
     facts
-}
-
-/// The side of a lane offset.
-pub fn offset_side(lanes: i8) -> Option<Side> {
-    match lanes.signum() {
-        -1 => Some(Side::Left),
-        1 => Some(Side::Right),
-        _ => None,
-    }
 }
 
 /// A partner the profile cannot simulate as itself becomes a passenger car, and that is said.

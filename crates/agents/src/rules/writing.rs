@@ -1,7 +1,6 @@
 //! The narrative's text: our own plain sentences, made from its facts.
 
 use super::limits::LEAST_TOLD_SPEED_MPS;
-use super::paraphrase::offset_side;
 use recrash_model::kinds::PartnerKind;
 use recrash_model::metrics::CollisionKind;
 use recrash_model::narrative::{
@@ -84,6 +83,15 @@ impl<'a> Facts<'a> {
     /// Whether the partner did this.
     pub fn cp_did(&self, action: LongitudinalAction) -> bool {
         self.0.iter().any(|fact| fact.value == FactValue::CpAction { action })
+    }
+}
+
+/// The side of a lane offset.
+pub fn offset_side(lanes: i8) -> Option<Side> {
+    match lanes.signum() {
+        -1 => Some(Side::Left),
+        1 => Some(Side::Right),
+        _ => None,
     }
 }
 

@@ -5,7 +5,8 @@
 
 mod reaction;
 
-use crate::driver::{Body, Conflict, Driver, ReferenceDriver, STEPS_PER_S};
+use crate::driver::{Conflict, Driver, ReferenceDriver};
+use crate::sight::{Body, STEPS_PER_S};
 use recrash_model::geometry::{OrientedBox, Pose, Vec2};
 use recrash_model::math;
 use recrash_model::preventability::{InTheirPlace, Preventability};

@@ -1,7 +1,7 @@
 //! A driver who reacts after the time that people take, and brakes in full: for crossings too (green2000).
 
 use super::Encounter;
-use crate::driver::{BRAKING_JERK_MPS3, FULL_BRAKING_MPS2, STEPS_PER_S};
+use crate::sight::{BRAKING_JERK_MPS3, FULL_BRAKING_MPS2, STEPS_PER_S};
 use recrash_model::geometry::{OrientedBox, Pose, Vec2};
 use recrash_model::preventability::InTheirPlace;
 

@@ -6,7 +6,8 @@
 
 use super::objects;
 use super::{
-    DriveJunction, DriveLane, DriveMap, DriveRoad, FIRST_JUNCTION_ID, LaneOn, Mark, Neighbour, id_at, lane_number,
+    DriveJunction, DriveLane, DriveMap, DriveRoad, FIRST_JUNCTION_ID, LaneOn, Mark, Named, Neighbour, id_at,
+    lane_number,
 };
 use recrash_model::scenario::{Control, GraphMap, RoadSpec, RoadStart, Strip, StripKind};
 use recrash_roads::graph::Stretch;
@@ -28,16 +29,6 @@ struct LaneEnd {
     end: End,
     /// OpenDRIVE's number.
     number: i32,
-}
-
-/// A road with direction, as the network names it.
-pub(super) struct Named {
-    /// Position in the map.
-    pub(super) road: usize,
-    /// OpenDRIVE's numbers of its lanes.
-    pub(super) numbers: Vec<i32>,
-    /// Whether it leads against the reference line.
-    pub(super) against: bool,
 }
 
 /// The network of a map, with its signals and signs.

@@ -45,6 +45,16 @@ struct LaneOn {
     length_m: f64,
 }
 
+/// A road with direction, as the network names it.
+struct Named {
+    /// Position in the map.
+    road: usize,
+    /// OpenDRIVE's numbers of its lanes.
+    numbers: Vec<i32>,
+    /// Whether it leads against the reference line.
+    against: bool,
+}
+
 /// An OpenDRIVE road. Its id is its position in the list plus one.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct DriveRoad {

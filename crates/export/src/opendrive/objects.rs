@@ -1,7 +1,6 @@
 //! What stands or lies on roads: crosswalks, parking spaces, driveways, buildings; signals and signs.
 
-use super::graph::Named;
-use super::{DriveMap, FIRST_JUNCTION_ID};
+use super::{DriveMap, FIRST_JUNCTION_ID, Named};
 use crate::xml::{Element, rounded};
 use recrash_model::geometry::Vec2;
 use recrash_model::math;

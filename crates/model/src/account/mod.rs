@@ -20,8 +20,8 @@ pub use types::{
 
 pub use untold::Untold;
 
-use crate::narrative::FirstMover;
-use crate::record::RecordRef;
+use crate::conflict::FirstMover;
+use crate::origin::RecordRef;
 use crate::scenario::Author;
 use crate::template::{Movement, RoadType, Template};
 use crate::zones::ContactZone;

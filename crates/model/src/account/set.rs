@@ -2,7 +2,7 @@
 
 use super::{Account, CrashType, Untold};
 use crate::metrics::CheckKind;
-use crate::record::RecordRef;
+use crate::origin::RecordRef;
 use serde::{Deserialize, Serialize};
 
 /// Format tag of [`AccountSet`].

@@ -2,7 +2,7 @@
 //! connections that a junction makes of itself.
 
 use super::blocks::{Carriageway, Turn};
-use crate::narrative::Side;
+use crate::conflict::Side;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

@@ -5,14 +5,14 @@
 //!
 //! Lateral offsets `t` are positive to the **right** of travel and lane 0 is the leftmost, as in MetaDrive.
 
-use crate::narrative::Origin;
-use crate::record::RecordRef;
+use crate::origin::{Origin, RecordRef};
 use crate::surroundings::{Lighting, Surface, Weather};
 use crate::template::Template;
 mod blocks;
 mod control;
 mod ego;
 mod graph;
+mod map;
 mod partner;
 mod place;
 mod plan;
@@ -21,6 +21,7 @@ pub use blocks::*;
 pub use control::*;
 pub use ego::*;
 pub use graph::*;
+pub use map::*;
 pub use partner::*;
 pub use place::*;
 pub use plan::*;

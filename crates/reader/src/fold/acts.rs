@@ -20,7 +20,7 @@ pub(super) fn acts(reading: &Reading<'_>, actor: Actor) -> Vec<ActFact> {
             && Some(actor) == reading.contacts.partner;
         let push = frame.sense == Sense::Push && frame.object == Some(actor) && frame.happened();
         let pushed = thrown || push && !merely_caused(reading, number, frame);
-        if doer(reading, frame) != Some(actor) && !pushed {
+        if reading.doer(frame) != Some(actor) && !pushed {
             continue;
         }
         let Some(act) = act_of(reading, number, frame, pushed) else { continue };
@@ -286,7 +286,7 @@ fn act_of(reading: &Reading<'_>, number: usize, frame: &Frame, pushed: bool) -> 
     }
     let act = frame.act()?;
     // "Its front wheel came off": it did not fall itself.
-    if act == Act::Fall && frame.who == Some(SUBJECT) && frame.with.is_some() && doer(reading, frame) == Some(SUBJECT) {
+    if act == Act::Fall && frame.who == Some(SUBJECT) && frame.with.is_some() && reading.doer(frame) == Some(SUBJECT) {
         return None;
     }
     if act == Act::Follow && in_headline(reading, frame) {
@@ -517,19 +517,6 @@ fn to_lane(reading: &Reading<'_>, actor: Actor, frame: &Frame, act: Act) -> Opti
         (_, Some(LaneWord::Opposing)) => Some(LeftRight::Left),
         _ => None,
     }
-}
-
-/// Who does what a frame tells: "the wheel of a van came off and rolled over" is told of the wheel.
-pub(super) fn doer(reading: &Reading<'_>, frame: &Frame) -> Option<Actor> {
-    let loose = |actor: &Actor| {
-        let kind = reading.story.world.actors[*actor].kind;
-        matches!(kind, Some(Kind::LooseWheel | Kind::Debris | Kind::Cargo | Kind::Object))
-    };
-    // "A panel on the rear of the van fell off": no part of the van that still is one.
-    let part = frame.with.is_some() && frame.act() == Some(Act::Fall);
-    let comes_off = matches!(frame.act(), Some(Act::Roll | Act::Fall))
-        && (frame.who == Some(SUBJECT) || part && frame.who.is_some());
-    reading.contacts.partner.filter(loose).filter(|_| comes_off).or(frame.who)
 }
 
 /// The side of a turn that only the column tells.

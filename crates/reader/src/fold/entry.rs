@@ -3,7 +3,6 @@
 
 use super::Reading;
 use super::across::begins;
-use super::acts::doer;
 use crate::frame::Frame;
 use recrash_model::account::{Act, ActFact};
 
@@ -160,11 +159,11 @@ pub(super) fn reach(reading: &Reading<'_>, frame: &Frame, act: Act) -> usize {
 
 /// "began to proceed through the intersection", and not "and came to a stop" there.
 fn stays_begun(reading: &Reading<'_>, frame: &Frame) -> bool {
-    let who = doer(reading, frame);
+    let who = reading.doer(frame);
     let goes_on = |later: &Frame| {
         later.sentence == frame.sentence
             && later.first > frame.first
-            && doer(reading, later) == who
+            && reading.doer(later) == who
             && later.happened()
             && matches!(later.act(), Some(Act::Stop | Act::Hold | Act::Slow))
     };

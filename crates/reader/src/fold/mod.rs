@@ -6,7 +6,6 @@ mod contact;
 mod controls;
 mod driver;
 mod entry;
-mod fallback;
 mod flashback;
 mod movement;
 mod nobody;
@@ -26,9 +25,9 @@ mod types;
 mod whereabouts;
 
 use crate::chunk::Piece;
-use crate::frame::{Frame, Own, Story, story};
+use crate::frame::{Frame, Story, story};
 use crate::lexicon::Sense;
-use crate::world::{Actor, SUBJECT};
+use crate::world::{Actor, Own, SUBJECT};
 use contact::Contacts;
 use recrash_model::account::{
     ACCOUNT_FORMAT, Account, Act, Contradiction, Fact, Kind, KindGroup, Other, Source, Striker, told,
@@ -66,6 +65,19 @@ impl Reading<'_> {
     /// A fact of these tokens.
     pub fn told<T>(&self, value: T, first: usize, end: usize) -> Fact<T> {
         Fact { value, source: self.words(first, end) }
+    }
+
+    /// Who does what a frame tells: "the wheel of a van came off and rolled over" is told of the wheel.
+    pub fn doer(&self, frame: &Frame) -> Option<Actor> {
+        let loose = |actor: &Actor| {
+            let kind = self.story.world.actors[*actor].kind;
+            matches!(kind, Some(Kind::LooseWheel | Kind::Debris | Kind::Cargo | Kind::Object))
+        };
+        // "A panel on the rear of the van fell off": no part of the van that still is one.
+        let part = frame.with.is_some() && frame.act() == Some(Act::Fall);
+        let comes_off = matches!(frame.act(), Some(Act::Roll | Act::Fall))
+            && (frame.who == Some(SUBJECT) || part && frame.who.is_some());
+        self.contacts.partner.filter(loose).filter(|_| comes_off).or(frame.who)
     }
 
     /// The token behind all that tells of the time up to the contact.

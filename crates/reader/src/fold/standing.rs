@@ -1,7 +1,7 @@
 //! State at the contact as the words tell it, how long somebody had stood, and why.
 
 use super::Reading;
-use super::acts::{doer, in_headline};
+use super::acts::in_headline;
 use crate::frame::Frame;
 use crate::lexicon::{Form, Lexicon, Progress, Relation, Sense};
 use crate::token::Token;
@@ -29,7 +29,7 @@ pub(super) fn state(reading: &Reading<'_>, actor: Actor) -> (Option<Fact<Contact
     let sentence = contact.map(|frame| frame.sentence);
     let mut told = Told::default();
     for (number, frame) in reading.story.frames.iter().enumerate() {
-        if doer(reading, frame) != Some(actor) || !frame.happened() || reading.is_after(number) {
+        if reading.doer(frame) != Some(actor) || !frame.happened() || reading.is_after(number) {
             continue;
         }
         let Some(act) = frame.act().filter(|act| !matches!(act, Act::OpenDoor | Act::Leave)) else { continue };

@@ -1,7 +1,6 @@
 //! What stands behind a verb and belongs to it: where somebody is, directions, sides, lanes, places.
 
 use super::parser::{Carry, Parser};
-use super::row::acts;
 use super::sided;
 use crate::chunk::{Chunk, Piece, Placed, Spot};
 use crate::lexicon::{Form, Part, Relation, Sense};
@@ -62,7 +61,7 @@ impl Parser<'_> {
             frame.sense == Sense::Approach
                 && relation == Relation::Behind
                 && to.is_none()
-                && other.is_some_and(|other| acts(self.world.actors[other].kind))
+                && other.is_some_and(|other| self.world.actors[other].acts())
         });
         if of_another {
             return;

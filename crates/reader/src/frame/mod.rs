@@ -16,12 +16,14 @@ mod supposed;
 mod verb;
 mod word;
 
+pub use crate::world::Own;
+
 use crate::chunk::{Joint, Piece, Spot};
 use crate::lexicon::{COMPANY, Form, Lexicon, Meaning, Occupant, Part, Progress, Relation, Sense};
 use crate::token::{Sentence, Token, TokenKind};
 use crate::world::{Actor, SUBJECT, World};
 use parser::Parser;
-use recrash_model::account::{Act, Compass, Kind, KindGroup, LaneWord, LeftRight};
+use recrash_model::account::{Act, Compass, KindGroup, LaneWord, LeftRight};
 
 /// One event.
 #[derive(Debug, Clone, PartialEq)]
@@ -120,22 +122,6 @@ pub struct Story {
     pub frames: Vec<Frame>,
     /// Who is in it.
     pub world: World,
-}
-
-/// What is known of the subject vehicle beforehand.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct Own<'a> {
-    /// Its kind.
-    pub kind: Option<Kind>,
-    /// The make by which the company that reports calls it.
-    pub make: Option<&'a str>,
-    /// The first word of the company's name, written small: a vehicle called by it is the subject vehicle, as with companies that
-    /// the lexicon knows.
-    pub company: &'a str,
-    /// What the record calls the vehicle: it is meant by "the Volvo" where nobody was named before.
-    pub vehicle: &'a str,
-    /// A word for the road user that the record says it crashed with: meant by a noun that nobody knows, where nobody else is named.
-    pub partner: Option<&'a str>,
 }
 
 /// Companies that report, and whose vehicles others drive too.

@@ -1,7 +1,6 @@
 //! One sentence after the other: subjects find their verbs, verbs their objects.
 
 use super::Frame;
-use super::row::acts;
 use crate::chunk::{Chunk, Joint, Piece, Placed, Spot, chunks};
 use crate::lexicon::{Lexicon, Occupant, Progress, Relation, Sense};
 use crate::token::{Sentence, Token};
@@ -113,7 +112,7 @@ impl Parser<'_> {
         self.share(begun);
         if let Some(main) = &carry.main {
             self.world.topic = main.actor;
-            if !acts(self.world.actors[main.actor].kind) && main.actor != SUBJECT {
+            if !self.world.actors[main.actor].acts() && main.actor != SUBJECT {
                 self.world.topic = SUBJECT;
             }
         }

@@ -1,7 +1,7 @@
 //! Who is meant by `it`, `its` and a door that is nobody's.
 
 use super::parser::{Carry, Parser};
-use super::row::{acts, transitive};
+use super::row::transitive;
 use crate::chunk::{Chunk, Joint, Placed};
 use crate::lexicon::Sense;
 use crate::world::{Actor, SUBJECT};
@@ -160,7 +160,7 @@ impl Parser<'_> {
     fn of_sentence(&self, carry: &Carry) -> Actor {
         let of_sentence = carry.main.as_ref().or(carry.subject.as_ref()).map(|mention| mention.actor);
         match of_sentence {
-            Some(actor) if actor == SUBJECT || acts(self.world.actors[actor].kind) => actor,
+            Some(actor) if actor == SUBJECT || self.world.actors[actor].acts() => actor,
             _ => self.world.pronoun(),
         }
     }

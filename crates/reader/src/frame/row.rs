@@ -1,12 +1,51 @@
 //! What stands before and behind in the row of chunks, and what verbs and kinds allow.
 
 use super::parser::{Carry, Parser};
-use super::verb::Spoken;
 use crate::chunk::{Article, Chunk, Noun, Placed};
 use crate::lexicon::{Form, Relation, Sense};
 use crate::token::TokenKind;
 use crate::world::{Actor, SUBJECT, same_kind};
-use recrash_model::account::{Act, Kind, KindGroup};
+use recrash_model::account::{Act, Kind};
+
+/// A verb where it stands.
+#[derive(Clone, Copy)]
+pub(super) struct Spoken<'a> {
+    pub(super) sense: Sense,
+    pub(super) form: Form,
+    /// Chunks of the sentence.
+    pub(super) all: &'a [Placed],
+    /// Place of the verb among them.
+    pub(super) at: usize,
+}
+
+impl<'a> Spoken<'a> {
+    pub(super) fn placed(&self) -> &'a Placed {
+        &self.all[self.at]
+    }
+
+    pub(super) fn word<'t>(&self, parser: &Parser<'t>) -> &'t str {
+        parser.tokens[self.all[self.at].first].text.as_str()
+    }
+
+    pub(super) fn next(&self) -> Option<&'a Chunk> {
+        self.all.get(self.at + 1).map(|placed| &placed.chunk)
+    }
+
+    pub(super) fn chunk_before(&self) -> Option<&'a Chunk> {
+        self.at.checked_sub(1).map(|at| &self.all[at].chunk)
+    }
+
+    /// "double-parked" is one word as well.
+    pub(super) fn is_bare(&self, parser: &Parser<'_>) -> bool {
+        single(self.placed()) || self.sense == Sense::Act(Act::Park) && self.word(parser) != "pulled"
+    }
+
+    /// Whether it is done to somebody: "was struck", "was shoved back".
+    pub(super) fn is_done_to(&self) -> bool {
+        self.form == Form::Past
+            && matches!(self.sense, Sense::Contact | Sense::RearEnd | Sense::ReverseContact | Sense::Push)
+    }
+}
 
 impl Parser<'_> {
     /// Whether words that nobody knows, written large or blacked out, stand before and behind.
@@ -74,7 +113,7 @@ impl Parser<'_> {
             Some(Chunk::Noun(noun)) => noun.subject != (subject.actor == SUBJECT) && noun.kind.is_some() | noun.subject,
             _ => false,
         };
-        touched && acts(self.world.actors[subject.actor].kind) && !carry.has_verb
+        touched && self.world.actors[subject.actor].acts() && !carry.has_verb
     }
 
     /// Whether a relative clause tells of a thing that the lexicon does not know: "the bracket that holds it".
@@ -195,7 +234,7 @@ impl Parser<'_> {
         }
         let into =
             matches!(all.get(at + 1).map(|next| &next.chunk), Some(Chunk::Preposition("into" | "against" | "along")));
-        let whole = |actor: Actor| acts(self.world.actors[actor].kind) || met || into;
+        let whole = |actor: Actor| self.world.actors[actor].acts() || met || into;
         let part = carry.subject.as_ref().filter(|subject| {
             (subject.piece.is_some() && carry.last_is(Some(subject)))
                 || subject.person.is_none() && subject.actor != SUBJECT && (met || into) && whole(subject.actor)
@@ -230,11 +269,6 @@ impl Parser<'_> {
 /// Whether a chunk is one word.
 pub(super) fn single(placed: &Placed) -> bool {
     placed.end == placed.first + 1
-}
-
-/// Whether somebody of this kind does things.
-pub(super) fn acts(kind: Option<Kind>) -> bool {
-    kind.is_none_or(|kind| kind.group() != KindGroup::Object)
 }
 
 /// Whether the verb takes an object.

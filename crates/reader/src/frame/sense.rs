@@ -3,8 +3,7 @@
 //! A new rule goes into [`SENSES`]; each sees what the ones before it made of the verb.
 
 use super::parser::{Carry, Parser};
-use super::row::single;
-use super::verb::Spoken;
+use super::row::{Spoken, single};
 use crate::chunk::Chunk;
 use crate::lexicon::{Form, Occupant, Sense};
 use crate::token::TokenKind;

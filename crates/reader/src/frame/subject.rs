@@ -1,8 +1,7 @@
 //! Of whom a verb is told, and what its own words name besides.
 
 use super::parser::{Carry, Mention, Parser};
-use super::row::acts;
-use super::verb::Spoken;
+use super::row::Spoken;
 use crate::chunk::{Chunk, Joint, Placed, Spot};
 use crate::lexicon::{Form, Relation, Sense};
 use crate::world::{Actor, SUBJECT};
@@ -163,10 +162,8 @@ impl Parser<'_> {
             && !carry.fresh
             && !carry.after_comma
         {
-            let near = carry
-                .last
-                .as_ref()
-                .filter(|last| placed.first <= last.end + 1 && acts(self.world.actors[last.actor].kind));
+            let near =
+                carry.last.as_ref().filter(|last| placed.first <= last.end + 1 && self.world.actors[last.actor].acts());
             if near.is_some() {
                 return near.cloned();
             }
@@ -235,7 +232,7 @@ impl Parser<'_> {
         let noun = (0..verb.at).rev().take(3).find(|at| !word(at))?;
         let with = noun.checked_sub(1).is_some_and(|at| matches!(verb.all[at].chunk, Chunk::Preposition("with")));
         let named = carry.last.as_ref().filter(|last| last.end == verb.all[noun].end && last.piece.is_none())?;
-        (with && !touches && acts(self.world.actors[named.actor].kind)).then(|| named.clone())
+        (with && !touches && self.world.actors[named.actor].acts()).then(|| named.clone())
     }
 
     /// "came upon a truck stopped in the road, blocking two lanes, and reaching into its own": of the truck, and whether it stands so.
@@ -301,7 +298,7 @@ impl Parser<'_> {
         let near = (between.len() <= 2 || form == Form::Past || (place && describes && between.len() <= 8))
             && between.iter().all(|token| !matches!(token.text.as_str(), "was" | "and" | "then" | ","));
         let known = &self.world.actors[last.actor];
-        let lively = (acts(known.kind) && (!known.several || between.is_empty()))
+        let lively = (known.acts() && (!known.several || between.is_empty()))
             || matches!(
                 sense,
                 Sense::Act(Act::Fall | Act::Roll | Act::Drift | Act::Park) | Sense::Other | Sense::Parked

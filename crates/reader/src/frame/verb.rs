@@ -4,53 +4,13 @@ use super::Frame;
 use super::adverbs::goes_about;
 use super::parser::{Carry, Mention, Parser};
 use super::row::{
-    another_finite, goes_on_behind_comma, looks_somewhere, names_doer, next_is_verb, next_preposition, single,
+    Spoken, another_finite, goes_on_behind_comma, looks_somewhere, names_doer, next_is_verb, next_preposition, single,
 };
 use super::sided;
 use crate::chunk::{Chunk, Joint, Placed};
 use crate::lexicon::{Form, Occupant, Progress, Sense};
 use crate::world::SUBJECT;
 use recrash_model::account::Act;
-
-/// A verb where it stands.
-#[derive(Clone, Copy)]
-pub(super) struct Spoken<'a> {
-    pub(super) sense: Sense,
-    pub(super) form: Form,
-    /// Chunks of the sentence.
-    pub(super) all: &'a [Placed],
-    /// Place of the verb among them.
-    pub(super) at: usize,
-}
-
-impl<'a> Spoken<'a> {
-    pub(super) fn placed(&self) -> &'a Placed {
-        &self.all[self.at]
-    }
-
-    pub(super) fn word<'t>(&self, parser: &Parser<'t>) -> &'t str {
-        parser.tokens[self.all[self.at].first].text.as_str()
-    }
-
-    pub(super) fn next(&self) -> Option<&'a Chunk> {
-        self.all.get(self.at + 1).map(|placed| &placed.chunk)
-    }
-
-    pub(super) fn chunk_before(&self) -> Option<&'a Chunk> {
-        self.at.checked_sub(1).map(|at| &self.all[at].chunk)
-    }
-
-    /// "double-parked" is one word as well.
-    fn is_bare(&self, parser: &Parser<'_>) -> bool {
-        single(self.placed()) || self.sense == Sense::Act(Act::Park) && self.word(parser) != "pulled"
-    }
-
-    /// Whether it is done to somebody: "was struck", "was shoved back".
-    fn is_done_to(&self) -> bool {
-        self.form == Form::Past
-            && matches!(self.sense, Sense::Contact | Sense::RearEnd | Sense::ReverseContact | Sense::Push)
-    }
-}
 
 impl Parser<'_> {
     /// A verb begins a frame.

@@ -109,7 +109,7 @@ impl World {
     /// "The shuttle was in its lane": the first whom a story names as known is whom it is told of.
     fn told_of_first(&mut self, sought: &Sought<'_>) -> Option<Meant> {
         let known = sought.is_definite() && sought.noun.adjectives.is_empty() && !sought.noun.several;
-        let things = self.actors[1..].iter().all(|known| known.kind.is_some_and(|kind| !acts(kind)));
+        let things = self.actors[1..].iter().all(|known| !known.acts());
         let unnamed = things && self.actors[SUBJECT].mentions == 0;
         if !(unnamed && known && sought.hint.is_none() && sought.kind.group() == KindGroup::Truck) {
             return None;

@@ -62,12 +62,33 @@ pub struct Known {
 }
 
 impl Known {
+    /// Whether it does things: it is no thing, as far as is told.
+    pub fn acts(&self) -> bool {
+        self.kind.is_none_or(acts)
+    }
+
     /// Notes where it is, once.
     pub fn place(&mut self, relation: Relation, sentence: usize) {
         if !self.relations.iter().any(|(known, _)| *known == relation) {
             self.relations.push((relation, sentence));
         }
     }
+}
+
+/// What is known of the subject vehicle beforehand.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Own<'a> {
+    /// Its kind.
+    pub kind: Option<Kind>,
+    /// The make by which the company that reports calls it.
+    pub make: Option<&'a str>,
+    /// The first word of the company's name, written small: a vehicle called by it is the subject vehicle, as with companies that
+    /// the lexicon knows.
+    pub company: &'a str,
+    /// What the record calls the vehicle: it is meant by "the Volvo" where nobody was named before.
+    pub vehicle: &'a str,
+    /// A word for the road user that the record says it crashed with: meant by a noun that nobody knows, where nobody else is named.
+    pub partner: Option<&'a str>,
 }
 
 /// Everybody in the story.
@@ -92,7 +113,7 @@ pub struct World {
 
 impl World {
     /// A world with the subject vehicle in it.
-    pub fn new(own: crate::frame::Own<'_>) -> Self {
+    pub fn new(own: Own<'_>) -> Self {
         let names = own.make.into_iter().map(str::to_owned).collect();
         let words = own.vehicle.split(|c: char| !c.is_alphanumeric());
         let vehicle = words.filter(|word| word.len() > 2).map(str::to_lowercase).collect();
@@ -232,7 +253,7 @@ impl World {
 
     /// Who else was named last.
     pub fn other(&self) -> Option<Actor> {
-        self.latest(|known| known.kind.is_none_or(acts) && known.mentions > 0)
+        self.latest(|known| known.acts() && known.mentions > 0)
     }
 
     /// The thing that was named last.

@@ -1,23 +1,12 @@
 //! One scenario: what it stands for, the replay with its plots, and tabs with everything behind it. It stands in a file of its
 //! own.
 
-use super::{compare, icon, parts, scenario, severity, story, triage};
+use super::{Case, compare, icon, parts, scenario, severity, story, triage};
 use crate::summary::Result;
 use crate::view::{CaseContext, CaseRow, CaseView, RunView};
 use crate::{anchor, data, words};
 use maud::{Markup, html};
 use serde_json::json;
-
-/// What every part of a case's section needs.
-#[derive(Clone, Copy)]
-pub struct Case<'a> {
-    /// What belongs to the suite.
-    pub context: CaseContext<'a>,
-    /// What the tables say of it.
-    pub row: &'a CaseRow,
-    /// Everything else.
-    pub view: &'a CaseView,
-}
 
 /// The file of one case: one call of the one function that the page offers, with one JSON value. The markup in it is text
 /// like any other, and nothing in it runs.

@@ -1,7 +1,6 @@
 //! Faithfulness and metrics of a case, the run as designed beside the tuned one.
 
-use super::case::Case;
-use super::{parts, zones};
+use super::{Case, parts, zones};
 use crate::view::RunView;
 use crate::words;
 use maud::{Markup, html};

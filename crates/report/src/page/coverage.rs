@@ -1,6 +1,6 @@
 //! What the picks cover: numbers, a grid of every template the profile can express, and the holes by name.
 
-use super::{Context, parts, records::heat};
+use super::{Context, parts};
 use crate::words::{self, fixed, thousands};
 use maud::{Markup, html};
 use recrash_model::template::{RoadType, Template};
@@ -87,7 +87,7 @@ fn grid(context: &Context, road: RoadType, work_zone: bool) -> Markup {
                     @let template = Template { road, sv: *sv, cp: *cp, work_zone };
                     @let found = selection.templates.iter().find(|count| count.template == template);
                     @match found {
-                        Some(count) if count.picks > 0 => td.(heat(count.records, most)) title={ (template) ": " (count.records) " records, " (count.picks) " scenarios" } {
+                        Some(count) if count.picks > 0 => td.(parts::heat(count.records, most)) title={ (template) ": " (count.records) " records, " (count.picks) " scenarios" } {
                             (count.records) span.dots aria-label={ (count.picks) " scenarios" } { @for _ in 0..count.picks.min(8) { "\u{25cf}" } }
                         },
                         Some(count) => td.hole title={ (template) ": " (count.records) " records, no scenario" } { (count.records) "!" },

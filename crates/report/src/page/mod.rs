@@ -3,7 +3,7 @@
 
 mod about;
 mod case;
-pub mod cluster_map;
+mod cluster_map;
 mod compare;
 mod corpus;
 mod coverage;
@@ -22,7 +22,7 @@ mod zones;
 
 use crate::search::ToldRecords;
 use crate::summary::Summary;
-use crate::view::SuiteView;
+use crate::view::{CaseContext, CaseRow, CaseView, SuiteView};
 use crate::{data, words};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD as BASE64;
@@ -68,6 +68,17 @@ pub struct Context<'a> {
     pub told: ToldRecords<'a>,
 }
 
+/// What every part of a case's section needs.
+#[derive(Clone, Copy)]
+pub struct Case<'a> {
+    /// What belongs to the suite.
+    pub context: CaseContext<'a>,
+    /// What the tables say of it.
+    pub row: &'a CaseRow,
+    /// Everything else.
+    pub view: &'a CaseView,
+}
+
 /// The page.
 pub fn render(suite: &SuiteView) -> String {
     let context = Context { suite, summary: Summary::of(suite), told: ToldRecords::of(suite) };
@@ -83,7 +94,8 @@ pub fn render(suite: &SuiteView) -> String {
         }
         (keyboard_help())
     };
-    document(&title, &suite.generated_by, &body, &data::suite(&context), SCRIPT, Cases::Beside)
+    let data = data::suite(suite, &context.told, &cluster_map::shown(suite));
+    document(&title, &suite.generated_by, &body, &data, SCRIPT, Cases::Beside)
 }
 
 /// Whether a page reads files of cases from beside it.

@@ -87,10 +87,6 @@ fn account_sentence(context: &Context, accounts: &AccountSet) -> Markup {
     }
 }
 
-fn share(part: usize, whole: usize) -> f64 {
-    if whole == 0 { 0.0 } else { part as f64 / whole as f64 }
-}
-
 fn tile(name: &str, value: Markup, note: Markup, bar: Option<(f64, &str)>) -> Markup {
     html! {
         .tile {
@@ -114,13 +110,13 @@ fn account_tiles(context: &Context, accounts: &AccountSet) -> Markup {
                 "Incidents",
                 html! { (thousands(s.rows)) " \u{2192} " (thousands(accounts.incidents)) },
                 html! { "rows read, incidents; " (thousands(accounts.readable)) " with a narrative that can be read" },
-                Some((share(accounts.readable, accounts.incidents), "plain")),
+                Some((parts::share(accounts.readable, accounts.incidents), "plain")),
             ))
             (tile(
                 "Own crash told",
                 html! { (thousands(accounts.told.len())) span.of { " of " (thousands(accounts.readable)) } },
                 html! { "readable incidents, no told fact shown otherwise, nothing left out that the two did; invented: 0" },
-                Some((share(accounts.told.len(), accounts.readable), "good")),
+                Some((parts::share(accounts.told.len(), accounts.readable), "good")),
             ))
             (tile(
                 "Crash types told",
@@ -132,13 +128,13 @@ fn account_tiles(context: &Context, accounts: &AccountSet) -> Markup {
                 "Situation met",
                 html! { (thousands(first.met)) span.of { " of " (thousands(first.ran)) } },
                 html! { "driven by the system under test, as reconstructed" @if s.parked > 0 { "; " (thousands(s.parked)) " parked, not tested" } },
-                Some((share(first.met, first.ran), "plain")),
+                Some((parts::share(first.met, first.ran), "plain")),
             ))
             (tile(
                 "Ego fails, as reconstructed",
                 html! { (thousands(first.failures.total())) span.of { " of " (thousands(first.met)) } },
                 manners(first.failures),
-                Some((share(first.failures.total(), first.met), "bad")),
+                Some((parts::share(first.failures.total(), first.met), "bad")),
             ))
             (tile(
                 "Ego fails, after tuning",
@@ -148,7 +144,7 @@ fn account_tiles(context: &Context, accounts: &AccountSet) -> Markup {
                     @if !s.classes.is_empty() { ". Against other egos: " }
                     @for (i, (class, count)) in s.classes.iter().enumerate() { @if i > 0 { ", " } (thousands(*count)) " " (class.label()) }
                 },
-                Some((share(last.failures.total(), last.met), "bad")),
+                Some((parts::share(last.failures.total(), last.met), "bad")),
             ))
         }
     }
@@ -164,13 +160,13 @@ fn tiles(context: &Context) -> Markup {
                 "Records",
                 html! { (thousands(s.rows)) (arrow()) (thousands(s.usable)) },
                 html! { "rows read, records usable" },
-                Some((share(s.usable, s.rows), "plain")),
+                Some((parts::share(s.usable, s.rows), "plain")),
             ))
             (tile(
                 "Templates covered",
                 html! { (coverage.templates_covered) span.of { " of " (coverage.templates_observed) } },
                 html! { "observed; the profile can express " (coverage.templates_possible) },
-                Some((share(coverage.templates_covered, coverage.templates_observed), "good")),
+                Some((parts::share(coverage.templates_covered, coverage.templates_observed), "good")),
             ))
             (tile(
                 "Tell their own record",
@@ -180,7 +176,7 @@ fn tiles(context: &Context) -> Markup {
                     @if s.refused > 0 { ", " b { (thousands(s.refused)) " refused" } }
                     @if s.edited > 0 { ", " (thousands(s.edited)) " edited by hand" }
                 },
-                Some((share(s.origins[0], s.cases), "plain")),
+                Some((parts::share(s.origins[0], s.cases), "plain")),
             ))
             (tile(
                 "Show every told fact",
@@ -189,7 +185,7 @@ fn tiles(context: &Context) -> Markup {
                     (thousands(s.own_unfaithful)) " show something else, " (thousands(s.origins[0] - s.own_faithful - s.own_unfaithful)) " are unchecked or did not run"
                     @if s.origins[1] > 0 { "; " (thousands(s.other_faithful)) " of the " (thousands(s.origins[1])) " with another record do" }
                 },
-                Some((share(s.own_faithful, s.origins[0]), "good")),
+                Some((parts::share(s.own_faithful, s.origins[0]), "good")),
             ))
             (tile(
                 "Ego fails",
@@ -199,7 +195,7 @@ fn tiles(context: &Context) -> Markup {
                     @if !s.classes.is_empty() { ": " }
                     @for (i, (class, count)) in s.classes.iter().enumerate() { @if i > 0 { ", " } (thousands(*count)) " " (class.label()) }
                 },
-                Some((share(s.failed_after, s.ran), "bad")),
+                Some((parts::share(s.failed_after, s.ran), "bad")),
             ))
             (tile(
                 "Median least gap",

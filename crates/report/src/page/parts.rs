@@ -137,3 +137,27 @@ pub fn bar(share: f64, class: &str) -> Markup {
     let width = words::fixed(share.clamp(0.0, 1.0) * 100.0, 1).unwrap_or_default();
     html! { svg.bar.(class) viewBox="0 0 100 8" preserveAspectRatio="none" aria-hidden="true" { rect.ground width="100" height="8" {} rect.fill width=(width) height="8" {} } }
 }
+
+/// The share of a part in a whole; 0 of nothing.
+pub fn share(part: usize, whole: usize) -> f64 {
+    if whole == 0 { 0.0 } else { part as f64 / whole as f64 }
+}
+
+/// One of six shades; roots, so that small counts can be told apart.
+pub fn heat(n: usize, most: usize) -> &'static str {
+    const SHADES: [&str; 6] = ["heat-0", "heat-1", "heat-2", "heat-3", "heat-4", "heat-5"];
+    if n == 0 {
+        return SHADES[0];
+    }
+    SHADES[1 + (share(n, most).sqrt() * 4.999) as usize % 5]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shades_grow_with_the_count_and_keep_zero_apart() {
+        assert_eq!([0, 1, 30, 60, 120].map(|n| heat(n, 120)), ["heat-0", "heat-1", "heat-3", "heat-4", "heat-5"]);
+    }
+}

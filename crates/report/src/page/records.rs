@@ -36,10 +36,6 @@ pub fn section(context: &Context) -> Markup {
     }
 }
 
-fn share(part: usize, whole: usize) -> f64 {
-    if whole == 0 { 0.0 } else { part as f64 / whole as f64 }
-}
-
 fn funnel(context: &Context) -> Markup {
     let steps = &context.suite.records.funnel;
     let first = steps.first().map_or(0, |step| step.remaining);
@@ -62,7 +58,7 @@ fn funnel(context: &Context) -> Markup {
                     tr {
                         th scope="row" { (words::clean(&step.name, 120)) }
                         td.right.number { (thousands(step.remaining)) }
-                        td.bar-cell { (parts::bar(share(step.remaining, first), "plain")) }
+                        td.bar-cell { (parts::bar(parts::share(step.remaining, first), "plain")) }
                         td {
                             @for (reason, n) in &step.lost { div { span.number { (thousands(*n)) } " " (reason.label()) } }
                             @if step.lost.is_empty() { (parts::missing("nothing was taken away")) }
@@ -84,7 +80,7 @@ fn road_types(context: &Context) -> Markup {
         table.plain {
             caption.hidden-text { "Usable records by road type" }
             tbody { @for (road, n) in &tables.road_types {
-                tr { th scope="row" { (road.label()) } td.right.number { (thousands(*n)) } td.bar-cell { (parts::bar(share(*n, most), "plain")) } }
+                tr { th scope="row" { (road.label()) } td.right.number { (thousands(*n)) } td.bar-cell { (parts::bar(parts::share(*n, most), "plain")) } }
             } }
         }
         p.muted { (words::count(tables.work_zone, "record")) " in work zones; the largest template has " (thousands(tables.largest_template)) "." }
@@ -105,21 +101,12 @@ fn movements(context: &Context) -> Markup {
             tbody { @for (cp, row) in cp() {
                 tr {
                     th scope="row" { "CP " (cp.label().to_lowercase()) }
-                    @for n in sv.iter().map(|column| row[*column]) { td.number.(heat(n, most)) { (thousands(n)) } }
+                    @for n in sv.iter().map(|column| row[*column]) { td.number.(parts::heat(n, most)) { (thousands(n)) } }
                 }
             } }
         } }
         @if nobody > 0 { p.muted { "Left out: " (words::count(nobody, "movement")) " of SV or CP that no record has." } }
     }
-}
-
-/// One of six shades; roots, so that small counts can be told apart.
-pub fn heat(n: usize, most: usize) -> &'static str {
-    const SHADES: [&str; 6] = ["heat-0", "heat-1", "heat-2", "heat-3", "heat-4", "heat-5"];
-    if n == 0 {
-        return SHADES[0];
-    }
-    SHADES[1 + (share(n, most).sqrt() * 4.999) as usize % 5]
 }
 
 fn templates(context: &Context) -> Markup {
@@ -144,7 +131,7 @@ fn templates(context: &Context) -> Markup {
                         td { (t.road.label()) } td { (t.sv.label()) } td { (t.cp.label()) }
                         td { @if t.work_zone { "yes" } @else { span.muted { "no" } } }
                         td.right.number { (thousands(count.records)) }
-                        td.bar-cell { (parts::bar(share(count.records, most), "plain")) }
+                        td.bar-cell { (parts::bar(parts::share(count.records, most), "plain")) }
                         td.right.number { (count.picks) }
                         td {
                             @let cases: Vec<(usize, &CaseRow)> = context.suite.cases.iter().enumerate().filter(|(_, case)| case.template == t).collect();
@@ -158,15 +145,5 @@ fn templates(context: &Context) -> Markup {
                 } }
             }
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn shades_grow_with_the_count_and_keep_zero_apart() {
-        assert_eq!([0, 1, 30, 60, 120].map(|n| heat(n, 120)), ["heat-0", "heat-1", "heat-3", "heat-4", "heat-5"]);
     }
 }

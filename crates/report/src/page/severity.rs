@@ -1,7 +1,6 @@
 //! How bad the contacts of a case are, with the harm that the record itself reports below.
 
-use super::case::Case;
-use super::parts;
+use super::{Case, parts};
 use crate::view::RunView;
 use crate::words::{self, fixed};
 use maud::{Markup, html};

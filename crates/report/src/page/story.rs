@@ -1,7 +1,6 @@
 //! The records a case came from, and the narrative made of them: every fact with the words it came from.
 
-use super::case::Case;
-use super::{icon, parts};
+use super::{Case, icon, parts};
 use crate::words::{self, LONGEST_TEXT};
 use maud::{Markup, html};
 use recrash_model::narrative::{Fact, FactSource, Narrative};

@@ -1,7 +1,6 @@
 //! What the failures are worth: how the other egos fare in the same scenarios.
 
-use super::case::Case;
-use super::{Context, parts};
+use super::{Case, Context, parts};
 use crate::summary::Result;
 use crate::view::{CaseRow, RunRow};
 use crate::words::fixed;

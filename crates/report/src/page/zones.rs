@@ -1,6 +1,6 @@
 //! Contact zones on a small outline of each vehicle: what the record ticks, and where the runs touched.
 
-use super::case::Case;
+use super::Case;
 use crate::view::RunView;
 use crate::words;
 use maud::{Markup, html};

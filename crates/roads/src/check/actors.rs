@@ -1,7 +1,6 @@
 //! Road users with a plan: names, ranges, where they start and go, and whether they can do what they are told.
 
-use super::numbers::name;
-use super::{At, Remarks, shown};
+use super::remarks::{At, Remarks, name, shown};
 use crate::course::{Course, rear_of};
 use crate::network::RoadNetwork;
 use crate::path::LanePath;

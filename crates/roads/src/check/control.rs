@@ -1,6 +1,6 @@
 //! Control of traffic: where stop lines lie.
 
-use super::{Remarks, shown};
+use super::remarks::{Remarks, shown};
 use crate::network::RoadNetwork;
 use crate::scenario::ControlPlacement;
 use recrash_model::scenario::{Device, ScenarioDraft};

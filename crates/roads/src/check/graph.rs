@@ -1,7 +1,6 @@
 //! Names, counts and ranges of a network of roads; what its geometry says is in [`crate::graph`].
 
-use super::numbers::{name, shorten};
-use super::{At, Remarks, shown};
+use super::remarks::{At, Remarks, name, shorten, shown};
 use crate::graph::undirected;
 use crate::near::near_names;
 use recrash_model::scenario::{AreaSpec, GraphMap, JunctionSpec, LinePiece, RoadSpec, RoadStart, Strip, StripKind};

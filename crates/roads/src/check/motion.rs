@@ -1,8 +1,8 @@
 //! Speeds, kinds, policies and lateral moves: what a road user may do on its way.
 
 use super::numbers::{MAX_SPEED_MPS, MAX_WANTED_MPS};
-use super::{Remarks, shown};
-use crate::lane::Centreline;
+use super::remarks::{Remarks, shown};
+use crate::centreline::Centreline;
 use crate::network::{RoadNetwork, RoadPart};
 use crate::path::LanePath;
 use crate::scenario::Placement;

@@ -1,11 +1,11 @@
 //! Names, counts and ranges: everything that can be said without looking at the road.
 
-use super::{At, Remarks, shown};
+use super::graph;
+use super::remarks::{At, Remarks, name, shorten, shown};
 use recrash_model::scenario::{
     LateralMove, MapSpec, Obstacle, Partner, Policy, SCENARIO_FORMAT, SCENARIO_FORMAT_1, ScenarioDraft, Start,
 };
 use std::collections::BTreeSet;
-use std::fmt::Display;
 
 /// The fastest any vehicle drives: MetaDrive cuts the engine at 80 km/h. [m/s]
 pub(super) const MAX_SPEED_MPS: f64 = 80.0 / 3.6;
@@ -13,9 +13,6 @@ pub(super) const MAX_SPEED_MPS: f64 = 80.0 / 3.6;
 /// The fastest that an ego may want on a road network, where recorded drivers may be faster than its engine: it then holds what it
 /// has. 100 mph. [m/s]
 pub(super) const MAX_WANTED_MPS: f64 = 44.7;
-
-/// Steps a policy may count, 0.1 s each: more than the longest rollout has.
-const MAX_STEPS: u32 = 10_000;
 
 /// The radius of the innermost lane of a curve, at least: two thirds more than a car's own turning circle. [m]
 const MIN_LANE_RADIUS_M: f64 = 5.0;
@@ -70,72 +67,9 @@ pub(super) fn check(draft: &ScenarioDraft, remarks: &mut Remarks) -> Fit {
     Fit { counts: partners_fit && obstacles_fit, map, ego, partners, obstacles }
 }
 
-impl Remarks {
-    /// Whether a number is finite and in range; says so where it is not.
-    pub(super) fn number(&mut self, path: impl Display, value: f64, min: f64, max: f64, unit: &str) -> bool {
-        if (min..=max).contains(&value) {
-            return true;
-        }
-        let path = path.to_string();
-        let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
-        let allowed = format!("allowed: {} to {}{unit}", shown(min), shown(max));
-        let (code, message) = if value.is_finite() {
-            ("scenario.range", format!("{} is {}{unit}, out of range", last_name(&path), shown(value)))
-        } else {
-            ("scenario.not-finite", format!("{} is {value}, which is no finite number", last_name(&path)))
-        };
-        self.error(code, path, message, allowed);
-        false
-    }
-
-    pub(super) fn count(&mut self, path: impl Display, found: usize, most: usize) -> bool {
-        if found > most {
-            let path = path.to_string();
-            let message = format!("{found} {path}, at most {most} are allowed");
-            self.error("scenario.count", path, message, "leave out those that the conflict does not need");
-        }
-        found <= most
-    }
-
-    fn steps(&mut self, path: impl Display, value: u32) {
-        if value > MAX_STEPS {
-            let path = path.to_string();
-            let message = format!("{} is {value} steps, out of range", last_name(&path));
-            self.error("scenario.range", path, message, format!("allowed: 0 to {MAX_STEPS} steps of 0.1 s"));
-        }
-    }
-}
-
-fn last_name(path: &str) -> &str {
-    path.rsplit('.').next().unwrap_or(path)
-}
-
-/// The beginning of a text that may be very long.
-pub(super) fn shorten(text: &str) -> String {
-    if text.chars().count() <= 40 { text.to_owned() } else { text.chars().take(40).chain(['…']).collect() }
-}
-
-pub(super) fn name(path: impl Display, text: &str, longest: usize, marks: &str, remarks: &mut Remarks) {
-    let length = text.chars().count();
-    let allowed = || {
-        let listed = marks.chars().map(|mark| format!("'{mark}'")).collect::<Vec<_>>().join(", ");
-        format!("allowed: 1 to {longest} letters a-z A-Z, digits and {listed}")
-    };
-    let (message, hint) = if length == 0 || length > longest {
-        (format!("the id has {length} characters"), allowed())
-    } else if let Some(bad) = text.chars().find(|c| !c.is_ascii_alphanumeric() && !marks.contains(*c)) {
-        (format!("the id {:?} holds {bad:?}", shorten(text)), allowed())
-    } else if text.starts_with('.') {
-        (format!("the id {text:?} begins with a dot"), "begin with a letter or digit".to_owned())
-    } else {
-        return;
-    };
-    remarks.error("scenario.id", path.to_string(), message, hint);
-}
-
 fn map(map: &MapSpec, remarks: &mut Remarks) -> bool {
-    if let MapSpec::G(graph) = map {
-        return super::graph::numbers(graph, remarks);
+    if let MapSpec::G(roads) = map {
+        return graph::numbers(roads, remarks);
     }
     let shared = map.carriageway();
     let mut fit = true;

@@ -1,6 +1,6 @@
 //! Obstacles: where they lie, and whether they leave a way through.
 
-use super::{Remarks, shown};
+use super::remarks::{Remarks, shown};
 use crate::lane::LaneId;
 use crate::network::RoadNetwork;
 use crate::scenario::{ObstaclePlacement, Placement};

@@ -1,8 +1,9 @@
 //! Ways and starts: which lanes each road user follows, and where on them it begins.
 
-use super::{Remarks, shown};
+use super::remarks::{Remarks, shown};
+use crate::conflict::Conflict;
 use crate::network::{RoadNetwork, RoadPart};
-use crate::path::{Conflict, LanePath};
+use crate::path::LanePath;
 use crate::scenario::{ActorPlacement, ObstaclePlacement, Placement};
 use recrash_model::geometry::OrientedBox;
 use recrash_model::kinds::PartnerKind;

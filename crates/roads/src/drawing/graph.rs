@@ -1,7 +1,8 @@
 //! Networks of roads as areas and lines.
 
 use super::{GroundShape, LineKind, RoadDrawing};
-use crate::graph::{GroundArea, GroundKind, LEFT, RIGHT, points, side_of};
+use crate::graph::{LEFT, RIGHT, points, side_of};
+use crate::ground::{GroundArea, GroundKind};
 use crate::network::{NamedRoad, RoadNetwork, RoadPart};
 use recrash_model::geometry::Vec2;
 use recrash_model::scenario::{Control, GraphMap, RoadSpec, Strip, StripKind};

@@ -1,84 +1,21 @@
 //! Areas of a network that are no lanes: crosswalks, driveways, stalls, junctions, and those a map gives itself.
 
-use super::curve::{self, Stretch};
-use super::strips::{self, LEFT, RIGHT, ReferenceLine};
+use super::strips::{self, LEFT, RIGHT};
+use crate::curve::{self, Stretch};
+use crate::ground::{GroundArea, GroundKind};
 use crate::network::{NamedRoad, RoadNetwork};
 use crate::path::LanePath;
+use crate::reference_line::ReferenceLine;
 use recrash_model::geometry::{Pose, Vec2};
 use recrash_model::math;
 use recrash_model::narrative::Side;
-use recrash_model::scenario::{AreaKind, GraphMap, RoadSpec, Strip, StripKind};
+use recrash_model::scenario::{GraphMap, RoadSpec, Strip, StripKind};
 
 /// Width of a stall of a parking lot along its row, across it: itte2009's usual 9 feet. [m]
 const STALL_M: f64 = 2.7;
 
 /// How far a chord may run beside its arc. [m]
 const SAGITTA_M: f64 = 0.02;
-
-/// An area of the ground.
-#[derive(Debug, Clone, PartialEq)]
-pub struct GroundArea {
-    /// What it is.
-    pub kind: GroundKind,
-    /// Where it comes from: `main.crosswalks[0]`, `main.driveways[1]`, `main+.stalls[4]`, `areas[2]`, a junction's id.
-    pub name: String,
-    /// Its middle. A crosswalk is walked this way or the other; a driveway leads this way onto the road; a stall is
-    /// entered this way; elsewhere the heading says nothing.
-    pub middle: Pose,
-    /// Corners, in order. [m]
-    pub points: Vec<Vec2>,
-}
-
-/// What an area of the ground is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum GroundKind {
-    /// Paved, to be driven on.
-    Paved,
-    /// Where a junction's arms meet: paved too.
-    Junction,
-    /// Where pedestrians cross.
-    Crosswalk,
-    /// A piece of private road.
-    Driveway,
-    /// A stall of a parking lot, or a bay along a kerb.
-    Stall,
-    /// A raised island or a sidewalk.
-    Island,
-    /// A building or a wall.
-    Building,
-}
-
-impl GroundKind {
-    /// Whether a motor vehicle may be on it.
-    pub const fn is_paved(self) -> bool {
-        !matches!(self, Self::Island | Self::Building)
-    }
-}
-
-impl From<AreaKind> for GroundKind {
-    fn from(kind: AreaKind) -> Self {
-        match kind {
-            AreaKind::Paved => Self::Paved,
-            AreaKind::Crosswalk => Self::Crosswalk,
-            AreaKind::Island => Self::Island,
-            AreaKind::Building => Self::Building,
-        }
-    }
-}
-
-impl GroundArea {
-    /// Whether a point lies on it: a ray to the right crosses its sides an odd number of times.
-    pub fn contains(&self, point: Vec2) -> bool {
-        let mut odd = false;
-        for (from, to) in self.points.iter().zip(self.points.iter().cycle().skip(1)) {
-            if (from.y > point.y) != (to.y > point.y) {
-                let x = from.x + (point.y - from.y) / (to.y - from.y) * (to.x - from.x);
-                odd ^= point.x < x;
-            }
-        }
-        odd
-    }
-}
 
 /// The areas of a map, whose roads and junctions have been built.
 pub(super) fn areas(map: &GraphMap, network: &RoadNetwork, mouths: &[Vec<Mouth>]) -> Vec<GroundArea> {

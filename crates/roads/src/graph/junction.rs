@@ -1,9 +1,9 @@
 //! Junctions: connections from every lane that leads in to the arms that its turns lead to.
 
 use super::areas::{self, Mouth};
-use super::curve;
 use super::strips::{self, LEFT, RIGHT, StripPiece};
 use super::{Builder, is_open, problem};
+use crate::curve;
 use crate::lane::LaneId;
 use crate::network::RoadPart;
 use recrash_model::geometry::{OrientedBox, Pose};

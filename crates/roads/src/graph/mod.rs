@@ -4,21 +4,20 @@
 //! other, and a connection across a junction a chain of roads with one lane each.
 
 mod areas;
-mod curve;
 mod junction;
 mod place;
 mod strips;
 
+pub use crate::curve::Stretch;
+pub use crate::ground::{GroundArea, GroundKind};
+pub use crate::reference_line::ReferenceLine;
 pub(crate) use areas::points;
-pub use areas::{GroundArea, GroundKind};
-pub use curve::Stretch;
-pub(crate) use curve::biarc;
 pub(crate) use place::undirected;
+pub use strips::inner_edge_m;
 pub(crate) use strips::{LEFT, RIGHT, side_of};
-pub use strips::{ReferenceLine, inner_edge_m};
 
-use crate::lane::{Lane, LaneId};
-use crate::network::{NamedRoad, Road, RoadId, RoadNetwork, RoadPart};
+use crate::lane::{Lane, LaneId, RoadId};
+use crate::network::{NamedRoad, Road, RoadNetwork, RoadPart, followers};
 use recrash_model::Diagnostic;
 use recrash_model::scenario::{GraphMap, MapSpec, RoadSpec, StripKind};
 use strips::{Parts, StripPiece};
@@ -155,8 +154,7 @@ impl Builder<'_> {
             last[usize::from(named.pieces[named.pieces.len() - 1].0)] = Some(named.kind);
         }
         let of = |kinds: &[Option<StripKind>], lane: usize| kinds[usize::from(network.lanes[lane].road.0)];
-        let joints =
-            crate::ways::followers(&network.lanes, |lane| of(&last, lane).is_some(), |lane| of(&first, lane).is_some());
+        let joints = followers(&network.lanes, |lane| of(&last, lane).is_some(), |lane| of(&first, lane).is_some());
         network.followers = joints
             .into_iter()
             .enumerate()

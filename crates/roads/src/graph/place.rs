@@ -1,8 +1,9 @@
 //! Where reference lines lie: pieces one behind the other, roads behind each other, at junctions and along lanes.
 
-use super::curve::{self, Stretch};
-use super::strips::{self, LEFT, RIGHT, ReferenceLine};
+use super::strips::{self, LEFT, RIGHT};
 use super::{is_open, problem};
+use crate::curve::{self, Stretch};
+use crate::reference_line::ReferenceLine;
 use recrash_model::Diagnostic;
 use recrash_model::geometry::{Pose, Vec2};
 use recrash_model::math;

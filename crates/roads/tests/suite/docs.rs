@@ -2,9 +2,9 @@
 
 use std::collections::BTreeSet;
 
-const SOURCES: [&str; 15] = [
+const SOURCES: [&str; 17] = [
     include_str!("../../src/check/graph.rs"),
-    include_str!("../../src/graph/curve.rs"),
+    include_str!("../../src/curve.rs"),
     include_str!("../../src/graph/junction.rs"),
     include_str!("../../src/graph/mod.rs"),
     include_str!("../../src/graph/place.rs"),
@@ -16,6 +16,8 @@ const SOURCES: [&str; 15] = [
     include_str!("../../src/check/numbers.rs"),
     include_str!("../../src/check/obstacles.rs"),
     include_str!("../../src/check/places.rs"),
+    include_str!("../../src/check/remarks.rs"),
+    include_str!("../../src/json_parts.rs"),
     include_str!("../../src/read.rs"),
     include_str!("../../src/paper_dialect.rs"),
 ];

@@ -2,27 +2,12 @@
 
 use super::super::actors::Actor;
 use super::super::pattern::Pattern;
-use super::{MEETING, Sentence, details, only, words};
+use super::{MEETING, Relation, Sentence, details, only, words};
 use recrash_model::narrative::{FactSource, LanePosition, Side};
 use recrash_model::record::CrashRecord;
 use recrash_model::template::Movement;
 use recrash_model::zones::ContactZone;
 use regex::Regex;
-
-/// How the partner stood to the ego before the conflict.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Relation {
-    /// It came from this side.
-    From(Side),
-    /// It came from a cross street; from which side is not said.
-    Crossing,
-    /// It came towards the ego.
-    Oncoming,
-    /// It went beside the ego in the same direction, on this side where it is said.
-    Beside(Option<Side>),
-    /// It followed the ego, or led it, in the same lane.
-    Behind,
-}
 
 static FROM: Pattern = Pattern::new(
     r"(?i)\b(?:(?:approach\w*|com(?:e|ing)|came|enter\w*|proceed\w*|travel\w*|driv\w+|emerg\w+|mov(?:ed|ing))(?: \w+){0,6}? )?from (?:the|its|their)(?: [\w']+ ?\w*'s?)? (?P<side>left|right)(?:[- ]hand)?(?: side| cross street)?\b",

@@ -2,8 +2,7 @@
 
 use super::super::actors::Actor;
 use super::super::pattern::Pattern;
-use super::approach::Relation;
-use super::{Sentence, column, words};
+use super::{Relation, Sentence, column, words};
 use recrash_model::narrative::{FactSource, FactValue, LanePosition, LateralKind, LongitudinalAction, Side, Signal};
 use recrash_model::record::{CrashRecord, MPS_PER_MPH};
 use recrash_model::scenario::{MissingArm, ObstacleKind};

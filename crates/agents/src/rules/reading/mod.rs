@@ -12,13 +12,13 @@ mod zones;
 pub use account::account;
 pub use of_account::{collision_of, reading_of_account};
 
-pub use approach::{Relation, side_from_zones};
+pub use approach::side_from_zones;
 
 use super::actors::{Actor, Cast, Mentions};
 use super::pattern::Pattern;
 use super::text::telling_sentences;
 use recrash_model::metrics::CollisionKind;
-use recrash_model::narrative::{Fact, FactSource, FactValue};
+use recrash_model::narrative::{Fact, FactSource, FactValue, Side};
 use recrash_model::record::CrashRecord;
 use recrash_model::template::Movement;
 use recrash_model::zones::ContactZone;
@@ -28,6 +28,21 @@ use recrash_model::zones::ContactZone;
 pub(super) struct Sentence<'a> {
     pub(super) text: &'a str,
     pub(super) mentions: Mentions,
+}
+
+/// How the partner stood to the ego before the conflict.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Relation {
+    /// It came from this side.
+    From(Side),
+    /// It came from a cross street; from which side is not said.
+    Crossing,
+    /// It came towards the ego.
+    Oncoming,
+    /// It went beside the ego in the same direction, on this side where it is said.
+    Beside(Option<Side>),
+    /// It followed the ego, or led it, in the same lane.
+    Behind,
 }
 
 /// What one record states.

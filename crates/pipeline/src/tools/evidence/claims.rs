@@ -1,58 +1,11 @@
-//! The claims of the evidence, as a goal structure (GSN): goals, strategies, solutions, contexts, assumptions.
+//! What the evidence claims: of the suite as a whole, of its groups of tests, and of the tools.
 
-use super::numbers::{Number, find};
+use super::number::Number;
+use super::structure::{Claim, Structure};
 use super::{Runs, corpus};
 use recrash_model::profile::SystemProfile;
-use serde::Serialize;
 use serde_json::Value;
 use std::collections::BTreeMap;
-
-/// One element of the structure.
-#[derive(Debug, Serialize)]
-pub struct Claim {
-    id: String,
-    /// `goal`, `strategy`, `solution`, `context`, `assumption` or `undeveloped`.
-    kind: &'static str,
-    /// With the names of numbers in braces.
-    template: String,
-    /// With the numbers.
-    text: String,
-    numbers: Vec<String>,
-    supported_by: Vec<String>,
-    in_context_of: Vec<String>,
-}
-
-/// Makes claims with numbers.
-pub struct Structure<'a> {
-    numbers: &'a [Number],
-    claims: Vec<Claim>,
-}
-
-impl Structure<'_> {
-    /// Adds an element: its template has the names of numbers in braces.
-    pub fn add(&mut self, id: &str, kind: &'static str, template: &str, supported_by: &[&str], in_context_of: &[&str]) {
-        let names: Vec<String> = template
-            .split('{')
-            .skip(1)
-            .filter_map(|rest| rest.split_once('}'))
-            .map(|(name, _)| name.to_owned())
-            .collect();
-        let text = names.iter().fold(template.to_owned(), |text, name| {
-            let shown = find(self.numbers, name).map_or("?", |number| number.shown.as_str());
-            text.replace(&format!("{{{name}}}"), shown)
-        });
-        let owned = |ids: &[&str]| ids.iter().map(|id| (*id).to_owned()).collect();
-        self.claims.push(Claim {
-            id: id.to_owned(),
-            kind,
-            template: template.to_owned(),
-            text,
-            numbers: names,
-            supported_by: owned(supported_by),
-            in_context_of: owned(in_context_of),
-        });
-    }
-}
 
 /// Words of anybody's without braces, which stand for numbers here.
 fn plain(text: &str) -> String {
@@ -66,7 +19,7 @@ pub fn all(
     numbers: &[Number],
     reports: &BTreeMap<&'static str, Value>,
 ) -> Vec<Claim> {
-    let mut all = Structure { numbers, claims: Vec::new() };
+    let mut all = Structure::new(numbers);
     let (ego, simulator, suite) = (plain(&runs.ego), plain(&runs.simulator), &runs.suite);
     all.add(
         "G1",
@@ -124,7 +77,7 @@ pub fn all(
     groups(&mut all, runs);
     tools(&mut all, reports);
     corpus::claims(&mut all, reports.contains_key(corpus::NAME));
-    all.claims
+    all.claims()
 }
 
 /// Failures by crash type, by whose crash it is, by cause, and whether good drivers avoid them.

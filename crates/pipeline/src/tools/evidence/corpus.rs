@@ -1,7 +1,7 @@
 //! What of the crash files a suite holds, as a list that the checker counts in.
 
-use super::claims::Structure;
-use super::numbers::{Number, counted, holds};
+use super::number::{Number, counted, holds};
+use super::structure::Structure;
 use crate::error::PipelineError;
 use crate::suite::SUITE_FILE;
 use crate::tools::assessing::coverage_where_told;

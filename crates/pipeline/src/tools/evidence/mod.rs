@@ -3,7 +3,9 @@
 
 mod claims;
 mod corpus;
+mod number;
 mod numbers;
+mod structure;
 
 use crate::error::PipelineError;
 use crate::files::folders::must_be_free;

@@ -1,31 +1,13 @@
 //! The numbers of the evidence, each with the formula that the checker works it out by.
 
+use super::number::{Number, counted, find, holds, shown};
 use super::{TestFacts, corpus};
 use recrash_model::results::TestOutcome;
-use serde::Serialize;
 use serde_json::{Value, json};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Quantile of the standard normal for 95 %, two-sided.
 const Z95: f64 = 1.959_963_984_540_054;
-
-/// One number.
-#[derive(Debug, Clone, Serialize)]
-pub struct Number {
-    /// Its name.
-    pub id: String,
-    /// How it is worked out.
-    pub formula: &'static str,
-    /// What of: a test, a list with conditions, other numbers.
-    #[serde(flatten)]
-    pub of: BTreeMap<&'static str, Value>,
-    /// Its value.
-    pub value: Value,
-    /// `%` of a share, SI units else.
-    pub unit: &'static str,
-    /// As claims say it.
-    pub shown: String,
-}
 
 /// Formulas of a contact whose greatest value is claimed.
 const DELTA_V: [&str; 2] = ["ego_delta_v", "other_delta_v"];
@@ -64,11 +46,6 @@ pub fn all(tests: &[TestFacts], reports: &BTreeMap<&'static str, Value>) -> Vec<
         }
     }
     numbers
-}
-
-/// The number of this name.
-pub fn find<'a>(numbers: &'a [Number], id: &str) -> Option<&'a Number> {
-    numbers.iter().find(|number| number.id == id)
 }
 
 /// Numbers of one run: what its rollout shows.
@@ -152,28 +129,6 @@ fn of_report(report: &str, value: &Value, numbers: &mut Vec<Number>) {
     }
 }
 
-/// Whether a member of a list has these values; a name may be a path.
-pub fn holds(member: &Value, filter: &Value) -> bool {
-    let wanted = filter.as_object().into_iter().flatten();
-    wanted.into_iter().all(|(path, wanted)| {
-        let found = path.split('/').try_fold(member, |value, name| value.get(name));
-        found.unwrap_or(&Value::Null) == wanted
-    })
-}
-
-/// A count of the members of a list with these values.
-pub fn counted(id: &str, list: [&str; 2], filter: Value, count: usize) -> Number {
-    let value = Value::from(count);
-    Number {
-        id: id.to_owned(),
-        formula: "count",
-        of: BTreeMap::from([("list", json!(list)), ("where", filter)]),
-        shown: shown(&value, ""),
-        value,
-        unit: "",
-    }
-}
-
 /// Counts over the tests.
 struct Counted<'a> {
     tests: &'a [TestFacts],
@@ -221,15 +176,5 @@ fn shares(numbers: &mut Vec<Number>, id: &str, of: &str, among: &str) {
             value,
             unit: "%",
         });
-    }
-}
-
-/// A value as claims say it.
-fn shown(value: &Value, unit: &str) -> String {
-    match (value, unit) {
-        (Value::String(text), _) => text.clone(),
-        (Value::Number(number), "") => number.to_string(),
-        (value, "%") => format!("{:.1} %", 100.0 * value.as_f64().unwrap_or(0.0)),
-        (value, unit) => format!("{:.2} {unit}", value.as_f64().unwrap_or(0.0)),
     }
 }

@@ -1,14 +1,15 @@
 //! From where the partner and the others come, seen from the subject vehicle before any turn.
 
+mod fallback;
 mod places;
 mod road_user;
 
 use super::Reading;
-use super::fallback::{by_columns, by_side, zone_side};
 use super::party::has_zone;
 use crate::frame::Frame;
 use crate::lexicon::{Relation, Sense};
 use crate::world::{Actor, SUBJECT};
+use fallback::{by_columns, by_side, zone_side};
 pub(super) use places::side_of_road_of;
 use recrash_model::account::{
     Account, Act, ContactState, Fact, Kind, KindGroup, LaneWord, LeftRight, Origin, Source, told,
@@ -141,7 +142,7 @@ pub(crate) fn came_from(reading: &Reading<'_>, account: &Account) -> Option<Fact
     }
 }
 
-pub(super) fn forward(account: &Account) -> bool {
+fn forward(account: &Account) -> bool {
     told(&account.sv.state).is_some_and(|state| matches!(state, ContactState::Moving | ContactState::SettingOff))
 }
 

@@ -3,6 +3,7 @@
 //!
 //! A new rule goes into [`RULES`], before all that would say something else of its case.
 
+use super::fallback::{square_front, zone_side};
 use super::places::{
     after_its_turn, at_curb, climbs, faces_only, in_stall, lead_of_subject, on_side_street, passes_subject,
     side_of_road, stood_in,
@@ -10,7 +11,6 @@ use super::places::{
 use super::{Clues, changed_from, first_relation, lane_side, relation_to};
 use crate::chunk::Spot;
 use crate::fold::Reading;
-use crate::fold::fallback::{square_front, zone_side};
 use crate::fold::party::has_zone;
 use crate::fold::types::{turn_side, turning};
 use crate::frame::Frame;

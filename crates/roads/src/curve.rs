@@ -1,6 +1,6 @@
 //! Lines and arcs, and what is made of them: spirals, smooth lines through points, connections between two poses.
 
-use crate::lane::Centreline;
+use crate::centreline::Centreline;
 use recrash_model::geometry::{Pose, Vec2};
 use recrash_model::math;
 

@@ -1,8 +1,8 @@
 //! From where the partner came, where the words do not tell it: sides, zones and movement columns.
 
-use super::Reading;
-use super::origin::{Clues, forward};
-use super::party::has_zone;
+use super::{Clues, forward};
+use crate::fold::Reading;
+use crate::fold::party::has_zone;
 use crate::lexicon::Relation;
 use recrash_model::account::{Account, Act, ContactState, Fact, KindGroup, LeftRight, Origin, Party, told};
 use recrash_model::template::{Movement, RoadType};
