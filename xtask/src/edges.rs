@@ -1,5 +1,5 @@
 //! Which crate may use which, and which part of a crate which other part: the table in ARCHITECTURE.md against cargo's own
-//! word, and no circles inside `pipeline` and `reconstruct`.
+//! word, and no two files of a crate that use each other in a circle.
 
 use crate::steps::{Result, cargo_command, root};
 use std::collections::{BTreeMap, BTreeSet};
@@ -12,17 +12,19 @@ type Uses = BTreeMap<String, BTreeSet<String>>;
 /// Crates that no table speaks of: what tests share, and the script language.
 const FREE: [&str; 1] = ["testing"];
 
-/// Crates whose parts use each other in no circle; and those of which no file is in one.
-const LAYERED: [&str; 2] = ["pipeline", "reconstruct"];
-const LAYERED_BY_FILE: [&str; 1] = ["reconstruct"];
-
 /// Every rule of this file.
 pub fn problems(root: &Path) -> Result<Vec<String>> {
     let text = fs::read_to_string(root.join("ARCHITECTURE.md")).unwrap_or_default();
     let mut problems = edge_problems(&allowed(&text), &crate_uses("normal,build")?, &crate_uses("dev")?);
-    let source = |name: &str| root.join("crates").join(name).join("src");
-    problems.extend(LAYERED.into_iter().flat_map(|name| circle_problems(name, &part_uses(&source(name)))));
-    problems.extend(LAYERED_BY_FILE.into_iter().flat_map(|name| circle_problems(name, &file_uses(&source(name)))));
+    let entries = fs::read_dir(root.join("crates")).map_err(|error| format!("crates: {error}"))?;
+    let mut crates: Vec<_> = entries.filter_map(|entry| Some(entry.ok()?.file_name())).collect();
+    crates.sort();
+    for name in &crates {
+        let source = root.join("crates").join(name).join("src");
+        for uses in [part_uses(&source), file_uses(&source)] {
+            problems.extend(circle_problems(&name.to_string_lossy(), &uses));
+        }
+    }
     Ok(problems)
 }
 

@@ -1,7 +1,20 @@
 //! What is wrong with a whole file: which file, what was expected, how to mend it.
 
-use crate::mapping::MappingError;
 use thiserror::Error;
+
+/// Why a mapping file cannot be used.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+#[error("{file}{}{}: {message}", line.map(|line| format!(", line {line}")).unwrap_or_default(), if key.is_empty() { String::new() } else { format!(", key {key}") })]
+pub struct MappingError {
+    /// Name of the mapping file.
+    pub file: String,
+    /// Line, counted from 1, where it is known.
+    pub line: Option<usize>,
+    /// Key, such as `fields.road.values.2`; may be empty.
+    pub key: String,
+    /// What is wrong, and what is allowed.
+    pub message: String,
+}
 
 /// A file that cannot be read at all. Single bad rows are no error: they are rejected by row number.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]

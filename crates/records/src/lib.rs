@@ -30,9 +30,9 @@ mod text;
 
 pub use columns::published_header;
 pub use distribution::{Distribution, ValueCount, distributions};
-pub use error::IngestError;
+pub use error::{IngestError, MappingError};
 pub use filter::{FILTER_HELP, Filter, FilterError};
-pub use mapping::{MAPPING_FORMAT, MAX_MAPPING_BYTES, Mapping, MappingError};
+pub use mapping::{MAPPING_FORMAT, MAX_MAPPING_BYTES, Mapping};
 #[cfg(feature = "parquet")]
 pub use parquet::ParquetWriter;
 pub use stream::{Bytes, sha256};

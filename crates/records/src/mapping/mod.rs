@@ -6,6 +6,7 @@ mod rules;
 
 pub(crate) use read::read_mapped;
 
+use crate::error::MappingError;
 use crate::fields::Field;
 use serde::Deserialize;
 use serde::de::IntoDeserializer;
@@ -28,20 +29,6 @@ pub struct Mapping {
     main: Option<String>,
     joins: Vec<Join>,
     rules: BTreeMap<Target, Rule>,
-}
-
-/// Why a mapping file cannot be used.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("{file}{}{}: {message}", line.map(|line| format!(", line {line}")).unwrap_or_default(), if key.is_empty() { String::new() } else { format!(", key {key}") })]
-pub struct MappingError {
-    /// Name of the mapping file.
-    pub file: String,
-    /// Line, counted from 1, where it is known.
-    pub line: Option<usize>,
-    /// Key, such as `fields.road.values.2`; may be empty.
-    pub key: String,
-    /// What is wrong, and what is allowed.
-    pub message: String,
 }
 
 /// Another table, of whose rows one belongs to each row of the main table.

@@ -1,6 +1,7 @@
 //! TOML in, rules out, each problem with its line and key.
 
-use super::{Join, MAPPING_FORMAT, MAX_MAPPING_BYTES, Mapping, MappingError, Piece, Rule, Source, Target, Unit};
+use super::{Join, MAPPING_FORMAT, MAX_MAPPING_BYTES, Mapping, Piece, Rule, Source, Target, Unit};
+use crate::error::MappingError;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::ops::Range;
