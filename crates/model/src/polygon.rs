@@ -77,8 +77,13 @@ impl ConvexPolygon {
         if doubled_area > 1e-12 {
             return Some(origin + weighted * (1.0 / (3.0 * doubled_area)));
         }
+        self.mean_corner()
+    }
+
+    /// The mean of the corners; `None` where nothing is left.
+    pub fn mean_corner(&self) -> Option<Vec2> {
         let sum = self.corners().iter().fold(Vec2::default(), |sum, &corner| sum + corner);
-        Some(sum * (1.0 / self.len as f64))
+        (self.len > 0).then(|| sum * (1.0 / self.len as f64))
     }
 
     /// A corner that would not fit is left out: it cannot happen with eight cuts of a box, and must not panic.

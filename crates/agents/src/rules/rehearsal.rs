@@ -123,7 +123,7 @@ pub fn rehearse(ego: &Motion, partner: &Motion, from_s: f64, until_s: f64) -> Op
     let (gap_m, time_s) = closest?;
     let moment = time_s;
     let (a, b) = (ego.outline(moment), partner.outline(moment));
-    let (on_ego, on_partner) = match ConvexPolygon::overlap(&a, &b).centroid() {
+    let (on_ego, on_partner) = match ConvexPolygon::overlap(&a, &b).mean_corner() {
         Some(middle) => (middle, middle),
         None => {
             let (on_ego, on_partner, _) = a.nearest_points(&b);
