@@ -118,6 +118,16 @@ fn new_records_say_what_they_bring_and_leave_the_rest() {
     assert_eq!(code, 0, "{remarks}");
     assert!(remarks.contains("readable incidents are new: "), "{remarks}");
     assert!(remarks.contains("never seen before") || remarks.contains("was seen before"), "{remarks}");
+    // One row more makes its own case alone.
+    let units = || std::fs::read_to_string(place.path("suite/units.jsonl")).unwrap().lines().count();
+    let ids = || -> Vec<String> { cases(&place).iter().map(|case| case["id"].as_str().unwrap().to_owned()).collect() };
+    let (known, before) = (ids(), units());
+    place.few_records(81);
+    let (code, _, remarks) = run();
+    assert_eq!(code, 0, "{remarks}");
+    let (now, again) = (ids(), units() - before);
+    assert!(known.iter().all(|id| now.contains(id)), "{known:?} {now:?}");
+    assert!(again > 0 && again * 20 <= before, "{again} of {before} units were made again");
 }
 
 #[test]

@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 const EGOS: [Ego; 4] = [Ego::Recorded, Ego::Idm, Ego::MetadriveIdm, Ego::Reference];
 
 fn profile() -> SystemProfile {
-    toml::from_str(include_str!("../../../profiles/open.toml")).expect("a profile")
+    toml::from_str(include_str!("../../../../profiles/open.toml")).expect("a profile")
 }
 
 /// All cases, in order of their names: paths below `cases/` without `.json`.

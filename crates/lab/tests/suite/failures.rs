@@ -18,7 +18,7 @@ const FAILURES: usize = 100;
 
 /// The profile that every command takes without `--profile`.
 fn profile() -> SystemProfile {
-    toml::from_str(include_str!("../../../profiles/open.toml")).expect("a profile")
+    toml::from_str(include_str!("../../../../profiles/open.toml")).expect("a profile")
 }
 
 /// Random scenarios that the ego fails.
