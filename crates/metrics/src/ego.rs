@@ -9,7 +9,7 @@ use recrash_model::geometry::{OrientedBox, Vec2};
 use recrash_model::math;
 use recrash_model::metrics::{EgoMetrics, Timed};
 use recrash_model::profile::FailureCriteria;
-use recrash_model::scenario::{Aspect, Device, MapSpec};
+use recrash_model::scenario::{Aspect, Device, MapKind};
 use recrash_roads::{RoadId, RoadPart};
 
 /// Weaker braking is no braking: engine drag alone gives 0.36 m/s^2. [m/s^2] (assumed)
@@ -324,7 +324,7 @@ fn has_lane(way: &EgoWay<'_>, segment: usize, to_the_right: i32) -> bool {
 
 /// Whether a segment of the way crosses a junction, where no lanes are marked.
 fn is_unmarked(way: &EgoWay<'_>, segment: usize) -> bool {
-    matches!(way.network.map, MapSpec::X(_) | MapSpec::T(_) | MapSpec::G(_))
+    matches!(way.network.map.kind(), MapKind::Junction | MapKind::Network)
         && way.network.road(way.path.roads[segment]).part == RoadPart::Inner
 }
 

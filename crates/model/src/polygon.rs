@@ -5,7 +5,7 @@ use crate::geometry::{OrientedBox, Vec2};
 /// A box cut by eight half-planes has twelve corners at most.
 const CAPACITY: usize = 16;
 
-/// A convex polygon, anticlockwise, of at most [`CAPACITY`] corners.
+/// A convex polygon, anticlockwise, of sixteen corners at most.
 #[derive(Debug, Clone, Copy)]
 pub struct ConvexPolygon {
     corners: [Vec2; CAPACITY],

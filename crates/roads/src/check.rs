@@ -17,7 +17,7 @@ use crate::network::RoadNetwork;
 use crate::scenario::{ActorPlacement, Placement, Scenario, ego_size_m};
 use recrash_model::geometry::OrientedBox;
 use recrash_model::rollout::EGO_ID;
-use recrash_model::scenario::{MapSpec, ScenarioDraft};
+use recrash_model::scenario::ScenarioDraft;
 use recrash_model::vehicle::VehicleSpec;
 use recrash_model::{Diagnostic, Outcome};
 use remarks::Remarks;
@@ -63,9 +63,9 @@ pub fn check_on(draft: ScenarioDraft, known: Option<&Arc<RoadNetwork>>) -> Resul
         }
         _ => None,
     };
-    let ego = match &draft.map {
-        MapSpec::G(_) => places::ego_on_roads(&draft, &network, recorded.as_ref(), &mut remarks),
-        _ => places::ego(&draft, &network, &mut remarks),
+    let ego = match draft.map.network() {
+        Some(_) => places::ego_on_roads(&draft, &network, recorded.as_ref(), &mut remarks),
+        None => places::ego(&draft, &network, &mut remarks),
     };
     let Some(mut ego) = ego else {
         return Err(remarks.list);
@@ -75,7 +75,7 @@ pub fn check_on(draft: ScenarioDraft, known: Option<&Arc<RoadNetwork>>) -> Resul
         ego.speed_mps = draft.ego.recorded.as_ref().map_or(0.0, |plan| plan.speed_mps);
         ego.s_m = ego.path.project(recorded.pose.position, 0).s.clamp(0.0, ego.path.length_m);
     }
-    if !matches!(draft.map, MapSpec::G(_)) {
+    if draft.map.network().is_none() {
         motion::ego(&draft, &network, &ego, &mut remarks);
     }
     let mut partners = Vec::with_capacity(draft.partners.len());

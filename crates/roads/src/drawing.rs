@@ -7,7 +7,7 @@ use crate::lane::Lane;
 use crate::network::{Road, RoadNetwork, RoadPart};
 use recrash_model::geometry::Vec2;
 use recrash_model::math;
-use recrash_model::scenario::MapSpec;
+use recrash_model::scenario::MapKind;
 use serde::{Deserialize, Serialize};
 
 /// A road as lines and areas, in the rollout's coordinates. [m]
@@ -123,11 +123,11 @@ impl Lane {
 impl RoadNetwork {
     /// The network as areas and lines.
     pub fn drawing(&self) -> RoadDrawing {
-        if let MapSpec::G(map) = &self.map {
+        if let Some(map) = self.map.network() {
             return self.draw_graph(map);
         }
         let mut drawing = RoadDrawing::default();
-        let junction = matches!(self.map, MapSpec::X(_) | MapSpec::T(_));
+        let junction = self.map.kind() == MapKind::Junction;
         if junction {
             self.draw_junction(&mut drawing);
         }

@@ -459,7 +459,6 @@ mod tests {
     use super::*;
     use crate::ego::Ego;
     use crate::lanes::LaneIndex;
-    use recrash_model::scenario::MapSpec;
     use recrash_plan::metadrive::{NO_HANDOVER, Run as Told};
     use recrash_roads::{LaneId, check, read_draft};
     use std::path::{Path, PathBuf};
@@ -489,7 +488,7 @@ mod tests {
                 let lane = scenario.network().lane(LaneId(lane));
                 let road = scenario.network().road(lane.road);
                 let (from, to) = match way.iter().position(|known| *known == lane.road) {
-                    _ if !matches!(scenario.draft().map, MapSpec::G(_)) => (road.from.clone(), road.to.clone()),
+                    _ if scenario.draft().map.network().is_none() => (road.from.clone(), road.to.clone()),
                     Some(place) => (format!("way{place}"), format!("way{}", place + 1)),
                     None => (format!("road{}:0", lane.road.0), format!("road{}:1", lane.road.0)),
                 };

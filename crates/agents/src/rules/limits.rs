@@ -2,7 +2,7 @@
 
 use super::staging::Ground;
 use recrash_model::kinds::PartnerKind;
-use recrash_model::scenario::{MapSpec, Turn};
+use recrash_model::scenario::{MapKind, MapSpec, Turn};
 
 /// A recorded speed below this is that of a vehicle that stood, or nearly did, which the rules do not stage; assumed. [m/s]
 pub const LEAST_TOLD_SPEED_MPS: f64 = 1.0;
@@ -30,11 +30,11 @@ pub fn most_speed_of(kind: PartnerKind) -> f64 {
 
 /// What lies under a map.
 pub fn ground_of(map: &MapSpec) -> Ground {
-    match map {
-        MapSpec::S(_) | MapSpec::C(_) => Ground::Road,
-        MapSpec::X(_) | MapSpec::T(_) => Ground::Junction,
-        MapSpec::G(network) if network.junctions.is_empty() => Ground::Road,
-        MapSpec::G(_) => Ground::Junction,
-        MapSpec::O(_) => Ground::Circle,
+    match map.kind() {
+        MapKind::Road => Ground::Road,
+        MapKind::Junction => Ground::Junction,
+        MapKind::Roundabout => Ground::Circle,
+        MapKind::Network if map.network().is_some_and(|network| network.junctions.is_empty()) => Ground::Road,
+        MapKind::Network => Ground::Junction,
     }
 }

@@ -5,7 +5,7 @@ use crate::opendrive::DriveMap;
 use crate::xml::Element;
 use recrash_model::geometry::Vec2;
 use recrash_model::math;
-use recrash_model::scenario::MapSpec;
+use recrash_model::scenario::MapKind;
 use recrash_roads::{Lane, LaneId, Road, RoadNetwork, RoadPart};
 
 /// Angle between two points of a bound: 2 degrees, off by 6 mm on a radius of 40 m. [rad]
@@ -52,7 +52,7 @@ fn lanelet(network: &RoadNetwork, map: &DriveMap, id: LaneId, lane: &Lane) -> El
             element = element.child(reference(name, neighbour).with("drivingDir", direction));
         }
     }
-    let country = matches!(network.map, MapSpec::S(_) | MapSpec::C(_));
+    let country = network.map.kind() == MapKind::Road;
     let mut types = vec![if country { "country" } else { "urban" }];
     if inside {
         types.push("intersection");
@@ -135,7 +135,7 @@ fn incoming(network: &RoadNetwork, connecting: &[&Road], node: &str, id: usize, 
 /// Where a way through a junction leads: -1 right, 0 straight on, 1 left. On a roundabout the ring is straight on, and
 /// an exit is to the right.
 fn direction(network: &RoadNetwork, road: &Road) -> i32 {
-    if matches!(network.map, MapSpec::O(_)) {
+    if network.map.kind() == MapKind::Roundabout {
         let exits = network.roads.iter().any(|ring| ring.part == RoadPart::Ring && ring.to == road.from);
         return if exits && road.part == RoadPart::Inner { -1 } else { 0 };
     }

@@ -7,7 +7,7 @@ use crate::{ExportError, ExportFile, ExportOptions};
 use recrash_model::geometry::Pose;
 use recrash_model::kinds::PartnerKind;
 use recrash_model::rollout::{ActorState, ActorTrack, PlacedObstacle, Rollout, STEP_S};
-use recrash_model::scenario::{Environment, MapSpec, ObstacleKind, Turn};
+use recrash_model::scenario::{Environment, MapKind, ObstacleKind, Turn};
 use recrash_model::surroundings::{Lighting, Surface, Weather};
 use recrash_roads::Scenario;
 
@@ -103,15 +103,15 @@ fn environment_element(environment: &Environment) -> Option<Element> {
 fn tags(scenario: &Scenario) -> Element {
     let draft = scenario.draft();
     let mut tags = vec!["critical", "simulated"];
-    match draft.map {
-        MapSpec::S(_) | MapSpec::C(_) => tags.extend(["rural", "oncoming_traffic"]),
-        MapSpec::X(_) | MapSpec::T(_) => tags.extend(["urban", "intersection"]),
-        MapSpec::O(_) => tags.extend(["urban", "roundabout"]),
-        MapSpec::G(_) => tags.push("urban"),
+    match draft.map.kind() {
+        MapKind::Road => tags.extend(["rural", "oncoming_traffic"]),
+        MapKind::Junction => tags.extend(["urban", "intersection"]),
+        MapKind::Roundabout => tags.extend(["urban", "roundabout"]),
+        MapKind::Network => tags.push("urban"),
     }
-    match (draft.ego.turn, &draft.map) {
-        (Turn::Left, MapSpec::X(_) | MapSpec::T(_)) => tags.push("turn_left"),
-        (Turn::Right, MapSpec::X(_) | MapSpec::T(_)) => tags.push("turn_right"),
+    match (draft.ego.turn, draft.map.kind()) {
+        (Turn::Left, MapKind::Junction) => tags.push("turn_left"),
+        (Turn::Right, MapKind::Junction) => tags.push("turn_right"),
         _ => {}
     }
     tags.push(match draft.map.carriageway().lanes {

@@ -5,7 +5,7 @@ use super::{
     lane_number,
 };
 use recrash_model::geometry::Pose;
-use recrash_model::scenario::MapSpec;
+use recrash_model::scenario::{MapKind, MapSpec};
 use recrash_roads::{Centreline, Lane, RoadId, RoadNetwork, RoadPart};
 
 /// The network of a block.
@@ -265,7 +265,7 @@ fn name_of(network: &RoadNetwork, id: RoadId, connecting: bool) -> String {
             _ => format!("{} arm", arm(&road.from)),
         },
         (RoadPart::Inner, false) => "curve".to_owned(),
-        (RoadPart::Inner, true) if matches!(network.map, MapSpec::O(_)) => {
+        (RoadPart::Inner, true) if network.map.kind() == MapKind::Roundabout => {
             if is_ring_node(&road.from) {
                 format!("exit to the {} arm", arm(&road.to))
             } else {

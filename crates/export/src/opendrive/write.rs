@@ -3,7 +3,7 @@
 use super::{DriveJunction, DriveLane, DriveMap, DriveRoad, Mark, Neighbour};
 use crate::xml::{Element, rounded};
 use recrash_model::math;
-use recrash_model::scenario::MapSpec;
+use recrash_model::scenario::{MapKind, MapSpec};
 use recrash_roads::RoadNetwork;
 
 impl DriveMap {
@@ -17,8 +17,8 @@ impl DriveMap {
     }
 
     fn header(&self, network: &RoadNetwork, name: &str) -> Element {
-        let margin = match &network.map {
-            MapSpec::G(_) => self.roads.iter().map(widest_side_m).fold(0.0, f64::max),
+        let margin = match network.map.kind() {
+            MapKind::Network => self.roads.iter().map(widest_side_m).fold(0.0, f64::max),
             _ => {
                 let carriageway = network.map.carriageway();
                 f64::from(carriageway.lanes) * carriageway.lane_width_m
@@ -193,8 +193,5 @@ fn road_mark(mark: Mark) -> Element {
 }
 
 fn road_type(map: &MapSpec) -> &'static str {
-    match map {
-        MapSpec::S(_) | MapSpec::C(_) => "rural",
-        MapSpec::X(_) | MapSpec::T(_) | MapSpec::O(_) | MapSpec::G(_) => "town",
-    }
+    if map.kind() == MapKind::Road { "rural" } else { "town" }
 }

@@ -12,7 +12,7 @@ use crate::openscenario::places::world_position;
 use crate::openscenario::speed::speed_at_once;
 use crate::xml::{Element, number, rounded};
 use recrash_model::rollout::{ActorTrack, EGO_ID, Role, Rollout, STEP_S};
-use recrash_model::scenario::{Aspect, Device, MapSpec, Phase, ScenarioDraft};
+use recrash_model::scenario::{Aspect, Device, Phase, ScenarioDraft};
 
 /// The property of the header that holds the whole scenario, where entities do not.
 pub(crate) const WHOLE: &str = "recrash.scenario/2";
@@ -55,7 +55,7 @@ fn remarks(draft: &ScenarioDraft) -> Vec<String> {
             "doors, mirrors, arms and trailers are objects of their own that follow what was recorded".to_owned(),
         );
     }
-    if !draft.control.is_empty() && !matches!(draft.map, MapSpec::G(_)) {
+    if !draft.control.is_empty() && draft.map.network().is_none() {
         list.push("signals and signs of this map are not carried".to_owned());
     }
     if !draft.ego.stops.is_empty() {
@@ -85,7 +85,7 @@ fn road_network(draft: &ScenarioDraft, map_file: &str) -> Element {
             Element::new("TrafficSignalController").with("name", format!("signal {id}")).children(phases)
         })
         .collect();
-    if controllers.is_empty() || !matches!(draft.map, MapSpec::G(_)) {
+    if controllers.is_empty() || draft.map.network().is_none() {
         return element;
     }
     element.child(Element::new("TrafficSignals").children(controllers))

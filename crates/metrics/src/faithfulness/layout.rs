@@ -2,7 +2,7 @@
 
 use recrash_model::geometry::Vec2;
 use recrash_model::math;
-use recrash_model::scenario::{Approach, MapSpec, Turn};
+use recrash_model::scenario::{Approach, MapKind, Turn};
 use recrash_roads::{Lane, LanePath, RoadNetwork, RoadPart};
 
 /// The parts of a map that matter to what was driven on it. Made from its lanes, never from anybody's labels.
@@ -32,16 +32,16 @@ pub enum Layout {
 impl Layout {
     /// The layout of a network; `None` for one without roads.
     pub fn of(network: &RoadNetwork) -> Option<Self> {
-        match &network.map {
-            MapSpec::S(_) | MapSpec::C(_) => {
+        match network.map.kind() {
+            MapKind::Road => {
                 let roads = network.route(Approach::Same, Turn::Straight).filter(|roads| !roads.is_empty())?;
                 Some(Self::Plain { along: LanePath::new(network, roads, 0) })
             }
-            MapSpec::X(_) | MapSpec::T(_) => {
+            MapKind::Junction => {
                 let (min, max) = extent(network, RoadPart::Inner)?;
                 Some(Self::Junction { min, max })
             }
-            MapSpec::G(_) => match extent(network, RoadPart::Inner) {
+            MapKind::Network => match extent(network, RoadPart::Inner) {
                 Some((min, max)) => Some(Self::Junction { min, max }),
                 None => {
                     let roads =
@@ -49,7 +49,7 @@ impl Layout {
                     Some(Self::Plain { along: LanePath::new(network, roads, 0) })
                 }
             },
-            MapSpec::O(_) => {
+            MapKind::Roundabout => {
                 let (min, max) = extent(network, RoadPart::Ring)?;
                 let centre = (min + max) * 0.5;
                 Some(Self::Circle { centre, radius_m: 0.5 * (max.x - min.x) })

@@ -23,6 +23,19 @@ pub enum MapSpec {
     G(GraphMap),
 }
 
+/// What a map is, whatever its numbers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum MapKind {
+    /// A road without a junction: straight, or a curve.
+    Road,
+    /// A junction of three arms or four.
+    Junction,
+    /// A roundabout.
+    Roundabout,
+    /// A network of roads, with junctions or without.
+    Network,
+}
+
 impl Default for MapSpec {
     /// A network without a road.
     fn default() -> Self {
@@ -42,6 +55,24 @@ impl MapSpec {
             Self::G(m) => return m.carriageway(),
         };
         Carriageway { lanes, lane_width_m, approach_m }
+    }
+
+    /// What it is.
+    pub fn kind(&self) -> MapKind {
+        match self {
+            Self::S(_) | Self::C(_) => MapKind::Road,
+            Self::X(_) | Self::T(_) => MapKind::Junction,
+            Self::O(_) => MapKind::Roundabout,
+            Self::G(_) => MapKind::Network,
+        }
+    }
+
+    /// The network of roads; none where it is a block.
+    pub fn network(&self) -> Option<&GraphMap> {
+        match self {
+            Self::G(map) => Some(map),
+            _ => None,
+        }
     }
 
     /// The letter of the map's block.

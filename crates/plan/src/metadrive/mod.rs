@@ -243,11 +243,7 @@ fn actor(scenario: &Scenario, names: &LaneNames<'_>, member: &Member<'_>) -> Act
         role: member.role,
         kind: member.kind,
         way: member.path.segments[first..].iter().map(|segment| names.name(segment.lane)).collect(),
-        way_m: if matches!(scenario.draft().map, MapSpec::G(_)) {
-            way_m(scenario, member.path, first)
-        } else {
-            Vec::new()
-        },
+        way_m: if scenario.draft().map.network().is_some() { way_m(scenario, member.path, first) } else { Vec::new() },
         begins_m,
         s_m: member.s_m - begins_m,
         t_m: member.t_m,

@@ -5,7 +5,7 @@ use crate::acts::{PartTrack, ReplayTrack, ego_stop_lines, replay};
 use recrash_model::geometry::{Pose, Vec2};
 use recrash_model::kinds::PartnerKind;
 use recrash_model::rollout::{EGO_ID, STEP_S};
-use recrash_model::scenario::{Device, MapSpec, MissionStop, PartKind};
+use recrash_model::scenario::{Device, MissionStop, PartKind};
 use recrash_roads::{Centreline, Lane, LaneId, RoadPart, Scenario};
 use serde::Serialize;
 
@@ -106,7 +106,7 @@ impl Scene {
     /// What MetaDrive cannot hold.
     pub(super) fn of(scenario: &Scenario, handover: u32) -> Result<Option<Self>, String> {
         let draft = scenario.draft();
-        let network = matches!(draft.map, MapSpec::G(_));
+        let network = draft.map.network().is_some();
         let plain = !network
             && draft.actors.is_empty()
             && draft.control.is_empty()
@@ -192,7 +192,7 @@ impl<'a> LaneNames<'a> {
     pub(super) fn of(scenario: &'a Scenario) -> Self {
         let mut way: Vec<u16> = scenario.ego().path.roads.iter().map(|road| road.0).collect();
         way.dedup();
-        Self { scenario, network: matches!(scenario.draft().map, MapSpec::G(_)), way }
+        Self { scenario, network: scenario.draft().map.network().is_some(), way }
     }
 
     fn passes_twice(&self) -> bool {

@@ -2,7 +2,7 @@
 
 use recrash_model::geometry::Vec2;
 use recrash_model::rollout::ActorTrack;
-use recrash_model::scenario::{MapSpec, RoadStart};
+use recrash_model::scenario::RoadStart;
 use recrash_roads::Scenario;
 
 /// The inside of a junction: where its arms begin. Arms are at right angles, so it is a square.
@@ -14,7 +14,7 @@ pub(super) struct Junction {
 impl Junction {
     /// The one that is drawn.
     pub(super) fn of(scenario: &Scenario) -> Option<Self> {
-        let MapSpec::G(map) = &scenario.draft().map else { return None };
+        let map = scenario.draft().map.network()?;
         let junction = map.junctions.first()?;
         let half_m = map.roads.iter().find_map(|road| match road.start {
             RoadStart::Arm { from_m, .. } => Some(from_m),

@@ -7,7 +7,7 @@ use recrash_model::account::{Control as Said, ControlDevice, Obeyed, Origin, Sig
 use recrash_model::geometry::Vec2;
 use recrash_model::metrics::CheckResult;
 use recrash_model::rollout::{ActorTrack, STEP_S};
-use recrash_model::scenario::{Aspect, Control, Device, MapSpec};
+use recrash_model::scenario::{Aspect, Control, Device};
 use recrash_roads::{ControlPlacement, Scenario};
 
 /// What changed within this time has just changed. [s]
@@ -61,7 +61,7 @@ pub(super) fn check(
     contact_s: f64,
 ) -> (CheckResult, String) {
     let until = ((contact_s / STEP_S).floor() as usize).min(track.states.len() - 1);
-    let junction = matches!(&scenario.draft().map, MapSpec::G(map) if !map.junctions.is_empty());
+    let junction = scenario.draft().map.network().is_some_and(|map| !map.junctions.is_empty());
     if scenario.draft().control.is_empty() && !junction {
         return (CheckResult::CannotBeShown, "there is no junction to draw it at".to_owned());
     }

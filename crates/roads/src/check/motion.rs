@@ -51,7 +51,7 @@ pub(super) fn speed_limit(network: &RoadNetwork, way: &LanePath) -> (f64, &'stat
 pub(super) fn ego(draft: &ScenarioDraft, network: &RoadNetwork, ego: &Placement, remarks: &mut Remarks) {
     let (limit, why) = speed_limit(network, &ego.path);
     // Of a network the numbers say how much it may want.
-    let limit = if limit == MAX_SPEED_MPS && matches!(network.map, MapSpec::G(_)) { MAX_WANTED_MPS } else { limit };
+    let limit = if limit == MAX_SPEED_MPS && network.map.network().is_some() { MAX_WANTED_MPS } else { limit };
     if draft.ego.target_speed_mps > limit {
         let message =
             format!("the ego wants {} m/s on a way that allows {}", shown(draft.ego.target_speed_mps), shown(limit));

@@ -68,7 +68,7 @@ pub(super) fn check(draft: &ScenarioDraft, remarks: &mut Remarks) -> Fit {
 }
 
 fn map(map: &MapSpec, remarks: &mut Remarks) -> bool {
-    if let MapSpec::G(roads) = map {
+    if let Some(roads) = map.network() {
         return graph::numbers(roads, remarks);
     }
     let shared = map.carriageway();

@@ -7,7 +7,7 @@ use crate::path::LanePath;
 use crate::scenario::{ActorPlacement, ObstaclePlacement, Placement};
 use recrash_model::geometry::OrientedBox;
 use recrash_model::kinds::PartnerKind;
-use recrash_model::scenario::{Approach, MapSpec, Partner, ScenarioDraft, Start, Turn};
+use recrash_model::scenario::{Approach, MapKind, MapSpec, Partner, ScenarioDraft, Start, Turn};
 use recrash_model::vehicle::VehicleSpec;
 
 /// Free space between the boxes of two road users at the start, at least. [m]
@@ -214,7 +214,7 @@ fn offset_start(
             (s, way.length_m)
         }
         Approach::Opposite => {
-            if matches!(draft.map, MapSpec::S(_) | MapSpec::C(_)) {
+            if draft.map.kind() == MapKind::Road {
                 let beside = ego.path.pose(along, 0.0).position;
                 (way.project(beside, 0).s, way.length_m)
             } else {
@@ -362,7 +362,7 @@ fn round_down(value: f64) -> f64 {
 /// Length of the part of a way on which a partner may start: its arm, on the ring up to the ego's entry, on a road
 /// without a junction all of it. [m]
 fn arm_length(network: &RoadNetwork, way: &LanePath) -> f64 {
-    if matches!(network.map, MapSpec::S(_) | MapSpec::C(_)) {
+    if network.map.kind() == MapKind::Road {
         return way.length_m;
     }
     let on_ring = network.road(way.roads[0]).part == RoadPart::Ring;
