@@ -52,7 +52,7 @@ pub enum FetchError {
     },
     /// The server cannot be reached.
     #[error(
-        "{url} cannot be reached: {why}; are you offline? A browser elsewhere can get the file as well: give it with --records FILE"
+        "{url} cannot be reached: {why}; are you offline? A browser elsewhere can get the file as well: read that file then"
     )]
     Offline {
         /// Address.
@@ -80,7 +80,7 @@ pub enum FetchError {
     },
     /// Something else than data came.
     #[error(
-        "{url} gave {what} instead of a CSV file; nothing was kept; the file may have moved: look for its address on NHTSA's Standing General Order page and give the folder with --base-url"
+        "{url} gave {what} instead of a CSV file; nothing was kept; the file may have moved: look for its address on NHTSA's Standing General Order page and give its folder as the base URL"
     )]
     NotData {
         /// Address.
@@ -109,7 +109,7 @@ pub enum FetchError {
 fn meaning(status: u16) -> &'static str {
     match status {
         401 | 403 => "access is refused; a proxy or a firewall may stand between",
-        404 | 410 => "there is no such file; it may have moved: give the new folder with --base-url",
+        404 | 410 => "there is no such file; it may have moved: give the new folder as the base URL",
         429 => "too many requests; wait a while",
         500..=599 => "the server has a problem; try again later",
         _ => "the file was not given",

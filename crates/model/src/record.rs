@@ -279,7 +279,7 @@ impl RejectReason {
             Self::RedactedNarrative => "narrative redacted",
             Self::EmptyNarrative => "narrative empty",
             Self::Merged => "merged into another report of the incident",
-            Self::FilteredOut => "left out by --where",
+            Self::FilteredOut => "left out by the filter",
             Self::MovementNotExpressible => "movement not expressible",
             Self::RoadNotExpressible => "road type not expressible",
             Self::PartnerNotExpressible => "partner kind not expressible",

@@ -221,5 +221,5 @@ fn a_download_that_fails_keeps_what_was_there_and_leaves_nothing_else() {
     let port = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
     let (code, _, error) = place.run(&["fetch", "--base-url", &format!("http://127.0.0.1:{port}")]);
     assert_eq!(code, 1);
-    assert!(error.contains("are you offline?") && error.contains("--records FILE"), "{error}");
+    assert!(error.contains("are you offline?") && error.contains("read that file"), "{error}");
 }

@@ -94,7 +94,7 @@ fn described(root: &Element, origins: &mut Origins) -> Result<Value, Vec<Diagnos
         let message = "the header has no properties of recrash; only files that recrash wrote can be read back";
         return Err(vec![
             problem("openscenario.not-ours", header.unwrap_or(root), "OpenSCENARIO/FileHeader", message)
-                .with_hint("export one with `recrash export --to openscenario` to see what they look like"),
+                .with_hint("export a scenario to OpenSCENARIO to see what they look like"),
         ]);
     };
     if let Some(text) = whole(properties) {

@@ -69,7 +69,7 @@ fn a_file_that_is_cut_off_is_no_file() {
 #[test]
 fn refusals_of_the_server_say_what_to_do() {
     for (status, words) in
-        [("404 Not Found", "--base-url"), ("403 Forbidden", "proxy"), ("503 Busy", "try again later")]
+        [("404 Not Found", "base URL"), ("403 Forbidden", "proxy"), ("503 Busy", "try again later")]
     {
         let error = get(answer(status, "Content-Length: 0\r\n", "")).unwrap_err();
         assert!(matches!(error, FetchError::Status { .. }), "{error:?}");
