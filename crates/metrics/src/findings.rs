@@ -51,7 +51,7 @@ fn obstacle_contacts<'a>(
 ) -> impl Iterator<Item = Finding> + 'a {
     let counts = move |time_s: f64| time_s >= time_of(first) - 1e-9;
     metrics.obstacles_hit.iter().filter_map(move |&hit| {
-        let kind = rollout.obstacles.get(hit)?.kind.label();
+        let kind = rollout.obstacles.get(hit)?.kind.with_article();
         let (time_s, speed) = rollout.events.iter().find_map(|event| match event.kind {
             EventKind::ObstacleContact { actor: 0, obstacle, state } if obstacle == hit && counts(event.time_s) => {
                 Some((event.time_s, state.velocity().length()))
@@ -63,7 +63,7 @@ fn obstacle_contacts<'a>(
             time_s,
             value: speed,
             threshold: 0.0,
-            sentence: format!("The ego hit a {kind} (obstacle {}) at {time_s:.2} s with {speed:.1} m/s.", hit + 1),
+            sentence: format!("The ego hit {kind} (obstacle {}) at {time_s:.2} s with {speed:.1} m/s.", hit + 1),
         })
     })
 }

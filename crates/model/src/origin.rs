@@ -14,6 +14,14 @@ pub struct RecordRef {
     pub version: u32,
 }
 
+impl RecordRef {
+    /// Whether somebody who writes this means it: the report's id, with its version or without.
+    pub fn is_called(&self, name: &str) -> bool {
+        let rest = name.strip_prefix(&self.report_id);
+        rest.is_some_and(|rest| rest.is_empty() || rest.strip_prefix('/') == Some(&self.version.to_string()))
+    }
+}
+
 impl std::fmt::Display for RecordRef {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(f, "{}/{}", self.report_id, self.version)

@@ -35,7 +35,7 @@ pub enum PipelineError {
     },
     /// A stage is to work on a suite that is not there.
     #[error(
-        "there is no suite in {}: it holds no suite.json; check the folder, or begin one there with `recrash records --out {}`",
+        "there is no suite in {}: it holds no suite.json; check the folder, or make one there with `recrash run --out {}`",
         dir.display(), dir.display()
     )]
     NoSuite {
@@ -129,7 +129,7 @@ pub enum PipelineError {
         count: usize,
     },
     /// The work is done and its results are written, but they miss what is asked for.
-    #[error("missed: {what}")]
+    #[error("{what}")]
     Missed {
         /// What.
         what: String,

@@ -53,7 +53,11 @@ pub fn run(args: &BenchSimArgs, output: Output) -> Result<(), PipelineError> {
         show(&bench);
     }
     let missed: Vec<&str> = bench.asked().into_iter().filter(|(.., passed)| !passed).map(|(what, ..)| what).collect();
-    if missed.is_empty() { Ok(()) } else { Err(PipelineError::Missed { what: missed.join("; ") }) }
+    if missed.is_empty() {
+        Ok(())
+    } else {
+        Err(PipelineError::Missed { what: format!("missed: {}", missed.join("; ")) })
+    }
 }
 
 fn show(bench: &SimBench) {

@@ -90,7 +90,11 @@ fn run_open_loop(args: &ParityArgs, output: Output) -> Result<(), PipelineError>
 }
 
 fn missed_or_done(missed: &[&str]) -> Result<(), PipelineError> {
-    if missed.is_empty() { Ok(()) } else { Err(PipelineError::Missed { what: missed.join("; ") }) }
+    if missed.is_empty() {
+        Ok(())
+    } else {
+        Err(PipelineError::Missed { what: format!("missed: {}", missed.join("; ")) })
+    }
 }
 
 fn show(parity: &Parity, out: &Path) {

@@ -157,9 +157,10 @@ fn facts(accounts: &[Account]) {
 
 /// Shows one account.
 fn one(read: &Accounts, id: &str, output: Output) -> Result<(), PipelineError> {
-    let of = |incident: &&Incident| incident.reports.iter().any(|report| report.record.id.report_id == id);
+    let of = |incident: &&Incident| incident.reports.iter().any(|report| report.record.id.is_called(id));
     let Some(incident) = read.incidents.iter().find(of) else {
-        let message = format!("no report {id} in {} reports; recrash records --csv lists their ids", read.reports);
+        let message =
+            format!("there is no report {id} among {} reports; recrash records --csv lists their ids", read.reports);
         return Err(PipelineError::bad_input(message));
     };
     let Some(account) = read.accounts.iter().find(|account| account.incident == incident.id) else {

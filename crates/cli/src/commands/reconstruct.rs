@@ -62,9 +62,9 @@ pub fn run(args: &ReconstructArgs, output: Output) -> Result<(), PipelineError> 
     let options = args.options();
     let mut read = read_accounts(&options)?;
     if let Some(id) = &args.report {
-        read.accounts.retain(|account| account.reports.iter().any(|report| report.report_id == *id));
+        read.accounts.retain(|account| account.reports.iter().any(|report| report.is_called(id)));
         if read.accounts.is_empty() {
-            let message = format!("no readable narrative of a report {id} in {} reports", read.reports);
+            let message = format!("there is no report {id} with a readable narrative among {} reports", read.reports);
             return Err(PipelineError::bad_input(message));
         }
     }

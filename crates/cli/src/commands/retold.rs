@@ -38,7 +38,7 @@ impl Verdict {
             Some(run) if run.struck_standing() => Self::Struck,
             Some(run) if run.failed => Self::Fail,
             Some(_) => Self::Pass,
-            None if case.recorded.is_some() => Self::Parked,
+            None if case.recorded.is_some() && case.failure.is_none() => Self::Parked,
             None => Self::NotRun,
         }
     }
@@ -167,7 +167,8 @@ fn failures(runs: &TestedRuns) -> String {
 fn result(summary: &Summary) {
     let count = |holds: &dyn Fn(&CaseSummary) -> bool| summary.cases.iter().filter(|case| holds(case)).count();
     let [first, last] = summary.tested();
-    let parked = count(&|case| case.recorded.is_some() && case.tuned.is_none());
+    let parked = count(&|case| Verdict::of(case) == Verdict::Parked);
+    let not_run = count(&|case| Verdict::of(case) == Verdict::NotRun);
     println!("\n{} {} fails, where it came into the situation of the record,", bold("result:"), summary.ego);
     println!("  as reconstructed, from the handover on: {}", failures(&first));
     println!(
@@ -176,10 +177,11 @@ fn result(summary: &Summary) {
         count(&CaseSummary::found_by_tuning)
     );
     println!(
-        "  {} scenarios: {} driven, {} of them never in the situation; {parked} parked, nothing to test",
+        "  {} scenarios: {} driven, {} of them never in the situation; {parked} parked, nothing to test{}",
         summary.cases.len(),
         first.ran,
         first.ran - first.met,
+        if not_run > 0 { format!("; {not_run} not run") } else { String::new() },
     );
     let edited = count(&|case| !case.edited.is_empty());
     if edited > 0 {

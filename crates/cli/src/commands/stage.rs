@@ -2,15 +2,24 @@
 
 use crate::options::SuiteArgs;
 use crate::output::{self, Output};
-use crate::screen::println;
-use recrash_pipeline::{PipelineError, Stage, check_choices, run_stage, unfaithful};
+use crate::screen::{eprintln, println};
+use recrash_pipeline::{PipelineError, Stage, Suite, check_choices, run_stage, unfaithful};
 
 /// Runs a stage of a suite, and the stages that belong to it, as one.
 ///
 /// # Errors
 /// A stage's, or a run is not true to its record.
 pub fn run(args: &SuiteArgs, stages: &[Stage], output: Output) -> Result<(), PipelineError> {
+    let saved = Suite::saved_options(&args.out)?.and_then(|options| options.ego);
     let suite = args.open_saved()?;
+    let was = saved.as_deref().unwrap_or(&suite.profile().ego);
+    if was != suite.ego() && !output.json && !output.quiet {
+        eprintln!(
+            "warning: the ego of this suite was {was} and is {} now; what later stages made with the other is out of date until they \
+             run again",
+            suite.ego()
+        );
+    }
     output::batch_remarks(&suite, output);
     check_choices(&suite)?;
     let (mut done, mut skipped, mut lost) = (0, 0, Vec::new());

@@ -25,8 +25,8 @@ Examples:
   recrash test nightly --ego 'cmd:./my_stack' --baseline main.json --fail-on broken,worse --junit junit.xml
   recrash test nightly --ego 'cmd:./my_stack' --seeds 5  for an ego, or a simulation, that is random
 
-Exit code 5: a change of --fail-on happened, or a test could not be run; without a baseline and with --fail-on broken, a test
-failed.";
+Exit code 5: no test could be run; or, with --fail-on, one of its changes happened or a test could not be run. Without a baseline
+--fail-on broken means that a test failed.";
 
 const COMPARE_EXAMPLES: &str = "\
 Examples:
@@ -38,6 +38,8 @@ Exit code 5: a change of --fail-on happened, or a test of NEW could not be run. 
 
 /// Failures that the screen tells one by one.
 const SHOWN: usize = 20;
+/// Tests that were not run, of which it tells why.
+const SHOWN_NOT_RUN: usize = 3;
 
 /// What continuous integration gets.
 #[derive(Debug, Clone, Args)]
@@ -245,9 +247,23 @@ fn show_results(results: &TestResults) {
     if never > 0 {
         println!("{never} of the passed tests never came into the situation of their record: they say nothing of it");
     }
+    show_not_run(results);
     show_causes(results);
     show_failures(results);
     show_brackets(results);
+}
+
+/// Why the first tests were not run.
+fn show_not_run(results: &TestResults) {
+    let not_run = results.tests.iter().filter(|test| test.verdict() == TestVerdict::NotRun);
+    let told: Vec<(&str, &str)> =
+        not_run.filter_map(|test| Some((test.id.as_str(), test.telling()?.why.as_deref()?))).collect();
+    for (id, why) in told.iter().take(SHOWN_NOT_RUN) {
+        println!("not run: {id}: {why}");
+    }
+    if told.len() > SHOWN_NOT_RUN {
+        println!("and {} more, told by --json and --out", told.len() - SHOWN_NOT_RUN);
+    }
 }
 
 fn show_causes(results: &TestResults) {

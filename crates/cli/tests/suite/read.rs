@@ -62,7 +62,10 @@ fn a_report_that_is_not_there_is_told() {
     let place = Place::new();
     let (code, _, remarks) = place.run(&["read", "--report", "1-1"]);
     assert_eq!(code, 3, "{remarks}");
-    assert!(remarks.contains("no report 1-1 in 449 reports"), "{remarks}");
+    assert!(remarks.contains("no report 1-1 among 449 reports"), "{remarks}");
+    // With its version or without, as tables and files write it.
+    let shown = |id: &str| place.run(&["read", "--report", id, "--json"]).1;
+    assert!(shown("90103-362/1").contains("90103-362/1") && shown("90103-362/1") == shown("90103-362"));
 }
 
 #[test]

@@ -74,7 +74,7 @@ fn a_report_that_is_not_there_is_told() {
     let place = Place::new();
     let (code, _, errors) = place.run(&["reconstruct", "--records", FEW, "--report", "nobody"]);
     assert_eq!(code, 3, "{errors}");
-    assert!(errors.contains("no readable narrative of a report nobody"), "{errors}");
+    assert!(errors.contains("no report nobody with a readable narrative"), "{errors}");
 }
 
 #[test]

@@ -161,7 +161,7 @@ fn a_stage_makes_no_suite_where_there_is_none() {
         assert!(!place.path("siute").exists(), "{stage} has made the folder");
         if words.contains(&"--out") {
             assert!(
-                error.contains("there is no suite in siute") && error.contains("recrash records"),
+                error.contains("there is no suite in siute") && error.contains("recrash run --out siute"),
                 "{stage}: {error}"
             );
         }

@@ -68,8 +68,7 @@ fn a_file_that_is_cut_off_is_no_file() {
 
 #[test]
 fn refusals_of_the_server_say_what_to_do() {
-    for (status, words) in
-        [("404 Not Found", "base URL"), ("403 Forbidden", "proxy"), ("503 Busy", "try again later")]
+    for (status, words) in [("404 Not Found", "base URL"), ("403 Forbidden", "proxy"), ("503 Busy", "try again later")]
     {
         let error = get(answer(status, "Content-Length: 0\r\n", "")).unwrap_err();
         assert!(matches!(error, FetchError::Status { .. }), "{error:?}");
@@ -113,7 +112,7 @@ fn no_server_at_all_is_told_as_offline() {
     let port = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
     let error = download(&format!("http://127.0.0.1:{port}/file.csv"), &limits()).unwrap_err();
     assert!(matches!(error, FetchError::Offline { .. }), "{error:?}");
-    assert!(error.to_string().contains("are you offline?") && error.to_string().contains("--records"), "{error}");
+    assert!(error.to_string().contains("are you offline?") && error.to_string().contains("read that file"), "{error}");
 }
 
 #[test]

@@ -241,6 +241,14 @@ impl ObstacleKind {
         Self::Container,
     ];
 
+    /// For sentences, with its article: `a cone`, `debris`.
+    pub fn with_article(self) -> String {
+        match self {
+            Self::Debris => self.label().to_owned(),
+            _ => format!("a {}", self.label()),
+        }
+    }
+
     /// For sentences.
     pub const fn label(self) -> &'static str {
         match self {

@@ -106,7 +106,8 @@ fn inputs(suite: &Suite, cases: &Cases, cluster: &Cluster) -> Result<Vec<String>
     let id = &cluster.scenario_id;
     let mut inputs = cases.inputs(cluster, &cases.records_of(cluster));
     let members: Vec<&RecordRef> = cluster.members.iter().map(|&at| &cases.records.records[at].id).collect();
-    inputs.push(cases::text_of(&(members, cluster.number)));
+    // The number is on the page of a template's case alone.
+    inputs.push(cases::text_of(&(members, cases.accounts.is_none().then_some(cluster.number))));
     inputs.push(cases::text_of(suite.profile()));
     inputs.push(view::rerun_command(suite, "", suite.ego()));
     inputs.push(cases::text_of(&edited_files(suite, id)));

@@ -85,13 +85,13 @@ pub fn doctor(request: &DoctorRequest) -> Vec<DoctorItem> {
     all.push(metadrive(&request.python, runs));
     all.push(minilm(request.model_dir.as_deref(), &request.python));
     all.push(esmini());
-    all.push(package(&request.python, runs, "Scenic", "scenic", "exports in Scenic", "scenic==3.1.1"));
+    all.push(package(&request.python, runs, "Scenic", "scenic", "running exports in Scenic", "scenic==3.1.1"));
     all.push(package(
         &request.python,
         runs,
         "CommonRoad",
         "commonroad-io",
-        "exports in CommonRoad",
+        "reading exports in CommonRoad",
         "commonroad-io==2026.1",
     ));
     all.push(chromium());

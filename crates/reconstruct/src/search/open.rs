@@ -24,7 +24,7 @@ pub fn open_choices(account: &Account) -> Vec<Parameter> {
     };
     let mut list = Vec::new();
     if told.cp.impact_mps.is_none() && !told.cp.state.stands() && told.thing.is_none() {
-        let reason = "nobody tells the partner's speed; shares of the usual one of its kind and state";
+        let reason = "nobody tells the partner's speed at the contact; shares of the usual one of its kind and state";
         list.push(parameter(PARTNER_SPEED, "", 0.6, 1.6, usual.partner_speed, reason));
     }
     let approach_told = account.sv.speeds.iter().any(|speed| speed.value.meaning == SpeedMeaning::Approach);

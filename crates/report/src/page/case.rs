@@ -85,7 +85,11 @@ fn head(case: Case, anchor: &str) -> Markup {
             p.case-what {
                 @if let Some(account) = &row.account { b { (account.crash_type.label()) } ", incident " span.mono { (words::clean(&account.incident, 40)) } " with " (words::count(account.reports, "report")) ", " }
                 b { (words::template(&row.template)) }
-                @if let Some(cluster) = case.context.cluster.filter(|cluster| !cluster.invented) { ", cluster " (cluster.number) " of " (words::count(cluster.members.len(), "record")) }
+                @if let Some(cluster) = case.context.cluster.filter(|cluster| !cluster.invented) {
+                    @if case.row.account.is_none() { ", cluster " (cluster.number) " of " (words::count(cluster.members.len(), "record")) }
+                    // By accounts a number would change with every new incident, and the pages of all behind it.
+                    @else if cluster.members.len() > 1 { ", stands for " (words::count(cluster.members.len(), "record")) }
+                }
                 ". Tells " (words::clean(&words::provenance(row.origin.as_ref(), row.told.as_ref()), 400)) "."
                 @if let Some(narrative) = &view.narrative { " " span.told { (words::clean(&narrative.text, 600)) } }
             }

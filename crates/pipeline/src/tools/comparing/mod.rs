@@ -89,7 +89,7 @@ pub fn compare_with(base: &TestResults, new: &TestResults) -> Result<Comparison,
 }
 
 /// Refuses changes that must not be, and without a comparison tests that failed; in both cases those that were not run: a system
-/// that cannot be run is not as good as it was.
+/// that cannot be run is not as good as it was. Where nothing is asked for, only that nothing at all could be run.
 ///
 /// # Errors
 /// There are some.
@@ -99,7 +99,11 @@ pub fn hold_to(
     fail_on: &[Change],
 ) -> Result<(), PipelineError> {
     if fail_on.is_empty() {
-        return Ok(());
+        let (not_run, all) = (results.count(TestVerdict::NotRun), results.tests.len());
+        return match not_run > 0 && not_run == all {
+            true => Err(PipelineError::Missed { what: format!("none of {all} tests could be run") }),
+            false => Ok(()),
+        };
     }
     let mut counted: Vec<(usize, &str)> = match comparison {
         Some(all) => {
