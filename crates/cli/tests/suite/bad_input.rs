@@ -220,7 +220,7 @@ fn a_stage_before_its_turn_names_the_one_that_is_missing() {
     let case = Case::new();
     let (code, shown) = case.run(&["design", "--out", case.out().to_str().unwrap()]);
     assert_eq!(code, USAGE, "{shown}");
-    assert_says(&shown, &["recrash records"]);
+    assert_says(&shown, &["recrash run --out"]);
 }
 
 #[test]
