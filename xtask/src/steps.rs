@@ -5,7 +5,7 @@ use crate::{fuzz, tidy, wheel};
 use std::ffi::{OsStr, OsString};
 use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::{Child, Command, Stdio};
 use std::time::Instant;
 
 /// What a step gives: why it failed, in one line.
@@ -21,24 +21,78 @@ pub const STEPS: [Step; 10] = [
     ("lint", lint),
     ("prepare", prepare),
     ("test", test),
+    (ASIDE, python),
+    ("fuzz", fuzz::run),
     ("docs", docs),
-    ("python", python),
     ("wheel", wheel::step),
     ("browser", browser),
-    ("fuzz", fuzz::run),
 ];
+
+/// The step that runs beside those of [`BESIDE`]: it keeps one core busy, and builds nothing.
+const ASIDE: &str = "python";
+const BESIDE: [&str; 2] = ["fuzz", "docs"];
 
 /// Everything; stops at the first failure.
 pub fn ci(tally: &mut Tally) -> Result {
+    let mut aside = None;
     for (name, step) in STEPS {
-        let (begun, before) = (Instant::now(), processor_seconds());
-        println!("== xtask {name}");
-        step(tally).map_err(|why| format!("{name}: {why}"))?;
-        let processor =
-            processor_seconds().zip(before).map(|(now, before)| format!(", {:.0} s of processor", now - before));
-        println!("== xtask {name}: done in {:.0} s{}", begun.elapsed().as_secs_f64(), processor.unwrap_or_default());
+        if name == ASIDE {
+            // What it runs is built before anybody else asks cargo for something.
+            built()?;
+            aside = Some((Instant::now(), begun_aside(name)?));
+            continue;
+        }
+        if !BESIDE.contains(&name)
+            && let Some((begun, aside)) = aside.take()
+        {
+            timed(ASIDE, begun, || told_aside(aside, tally))?;
+        }
+        timed(name, Instant::now(), || step(tally))?;
     }
     Ok(())
+}
+
+/// Runs a step, and says how long that took.
+fn timed(name: &str, begun: Instant, step: impl FnOnce() -> Result) -> Result {
+    let before = processor_seconds();
+    println!("== xtask {name}");
+    step().map_err(|why| format!("{name}: {why}"))?;
+    let processor =
+        processor_seconds().zip(before).map(|(now, before)| format!(", {:.0} s of processor", now - before));
+    println!("== xtask {name}: done in {:.0} s{}", begun.elapsed().as_secs_f64(), processor.unwrap_or_default());
+    Ok(())
+}
+
+/// A step in a process of its own, which ends with whoever asked for it. What it says is kept in a file.
+struct Aside(Child, PathBuf);
+
+impl Drop for Aside {
+    fn drop(&mut self) {
+        // It has ended already, or nobody waits for it.
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
+fn begun_aside(name: &str) -> Result<Aside> {
+    let told = target().join(format!("xtask-{name}.txt"));
+    let begin = || {
+        let file = std::fs::File::create(&told)?;
+        let errors = file.try_clone()?;
+        Command::new(std::env::current_exe()?).arg(name).stdin(Stdio::null()).stdout(file).stderr(errors).spawn()
+    };
+    begin().map(|child| Aside(child, told.clone())).map_err(|error| format!("{name}: {error}"))
+}
+
+/// Waits for a step that was begun; shows and counts what it said.
+fn told_aside(mut aside: Aside, tally: &mut Tally) -> Result {
+    let status = aside.0.wait().map_err(|error| error.to_string())?;
+    let told = std::fs::read(&aside.1).map_err(|error| error.to_string())?;
+    for line in String::from_utf8_lossy(&told).lines() {
+        println!("{line}");
+        tally.read(line);
+    }
+    if status.success() { Ok(()) } else { Err(format!("ended with {status}")) }
 }
 
 /// Processor time of the programs that ended so far, with those that they started; where the system tells it. [s]

@@ -2,6 +2,9 @@
 
 use std::collections::BTreeSet;
 
+/// How the line of a step begins that is skipped.
+const STEP_SKIPPED: &str = "step skipped: ";
+
 /// What was run so far.
 #[derive(Debug, Default)]
 pub struct Tally {
@@ -16,11 +19,13 @@ pub struct Tally {
 
 impl Tally {
     /// Takes one line of a runner's output: of `cargo test`, whose skipped tests tell so on a line of their own
-    /// (`recrash_testing::skip`), or of pytest with the plugin `tests/plugin/counted.py`.
+    /// (`recrash_testing::skip`), of pytest with the plugin `tests/plugin/counted.py`, or of a step that is skipped.
     pub fn read(&mut self, line: &str) {
         if let Some(skipped) = line.strip_prefix("skipped: ") {
             self.skipped_in_rust.insert(skipped.to_owned());
         } else if let Some(skipped) = line.strip_prefix("pytest skipped: ") {
+            self.skipped_elsewhere.insert(skipped.to_owned());
+        } else if let Some(skipped) = line.strip_prefix(STEP_SKIPPED) {
             self.skipped_elsewhere.insert(skipped.to_owned());
         } else if let Some((_, counts)) = line.split_once("test result: ") {
             self.called_passed += number_before(counts, " passed");
@@ -31,9 +36,11 @@ impl Tally {
         }
     }
 
-    /// A step that cannot run here.
+    /// A step that cannot run here. Told in a line of its own too, for who runs the step in a process of its own.
     pub fn skip_step(&mut self, step: &str, why: &str) {
-        self.skipped_elsewhere.insert(format!("the step {step} ({why})"));
+        let skipped = format!("the step {step} ({why})");
+        println!("{STEP_SKIPPED}{skipped}");
+        self.skipped_elsewhere.insert(skipped);
     }
 
     /// What was skipped, and the closing line.
@@ -72,13 +79,14 @@ mod tests {
             "test result: FAILED. 3 passed; 1 failed; 0 ignored; 0 measured; 0 filtered out; finished in 0.01s",
             "pytest skipped: tests/test_a.py::test_b (needs esmini)",
             "pytest: 5 passed, 2 failed",
+            "step skipped: the step python (there is no .venv)",
         ] {
             tally.read(line);
         }
         tally.skip_step("browser", "Chromium is not installed");
-        let expected = "3 skipped:\n  records real_files::the_archive (needs ../shared)\n  \
-            tests/test_a.py::test_b (needs esmini)\n  the step browser (Chromium is not installed)\n\
-            19 passed, 3 failed, 3 skipped";
+        let expected = "4 skipped:\n  records real_files::the_archive (needs ../shared)\n  \
+            tests/test_a.py::test_b (needs esmini)\n  the step browser (Chromium is not installed)\n  \
+            the step python (there is no .venv)\n19 passed, 3 failed, 4 skipped";
         assert_eq!(tally.closing(), expected);
     }
 
