@@ -4,10 +4,10 @@ use crate::judging::run_scenario;
 use recrash_model::metrics::{Finding, FindingKind};
 use recrash_model::profile::SystemProfile;
 use recrash_model::run::JudgedRun;
-use recrash_model::triage::{EgoOutcome, REFERENCE_EGO, Triage};
+use recrash_model::triage::{EgoOutcome, Fared, REFERENCE_EGO, Triage};
 use recrash_roads::{RunError, Scenario, Simulator};
 
-/// The triage of a scenario that `system` fails with these findings, and the run of the reference driver where that is another.
+/// The triage of a scenario that the system under test fails in this run, and the run of the reference driver where that is another.
 ///
 /// The others are simulators with another ego each, whichever simulator the system under test was run on.
 ///
@@ -15,19 +15,18 @@ use recrash_roads::{RunError, Scenario, Simulator};
 /// One of the others could not be run.
 pub fn triage(
     scenario: &Scenario,
-    system: &str,
-    failed: &[Finding],
+    failed: &JudgedRun,
     profile: &SystemProfile,
     others: &[Box<dyn Simulator>],
 ) -> Result<(Triage, Option<JudgedRun>), RunError> {
     let mut outcomes = Vec::new();
     let mut reference = None;
-    for other in others.iter().filter(|other| other.ego() != system) {
+    for other in others.iter().filter(|other| other.ego() != failed.ego) {
         let run = run_scenario(scenario, other, profile, None)?;
         outcomes.push(EgoOutcome {
             ego: other.ego().to_owned(),
             failed: run.failed(),
-            avoids: false,
+            fared: Fared::of(failed, &run),
             findings: kinds(&run.findings),
             min_gap: run.metrics.min_gap,
             termination: run.metrics.termination,
@@ -37,7 +36,7 @@ pub fn triage(
             reference = Some(run);
         }
     }
-    Ok((Triage::new(&kinds(failed), outcomes), reference))
+    Ok((Triage::new(outcomes), reference))
 }
 
 fn kinds(findings: &[Finding]) -> Vec<FindingKind> {

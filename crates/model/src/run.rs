@@ -5,7 +5,7 @@ use crate::cause::Cause;
 use crate::hash::Fnv;
 use crate::metrics::{Answer, Finding, FindingKind, Metrics, Verdict};
 use crate::preventability::Preventability;
-use crate::rollout::Rollout;
+use crate::rollout::{EventKind, Rollout};
 use crate::severity::Severity;
 use serde::{Deserialize, Serialize};
 
@@ -80,6 +80,35 @@ impl JudgedRun {
     }
 }
 
+/// What an ego crashes with.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Crash {
+    /// A road user: its position in [`Rollout::actors`].
+    RoadUser(usize),
+    /// A thing: its position in [`Rollout::obstacles`].
+    Obstacle(usize),
+    /// The road's end.
+    OffRoad,
+}
+
+impl JudgedRun {
+    /// What the ego crashes with first, by the findings.
+    pub fn first_crash(&self) -> Option<Crash> {
+        let crashes = self.findings.iter().filter(|finding| finding.kind.is_crash());
+        let first = crashes.min_by(|a, b| a.time_s.total_cmp(&b.time_s))?;
+        match first.kind {
+            FindingKind::OffRoad => Some(Crash::OffRoad),
+            FindingKind::ObstacleContact => self.rollout.events.iter().find_map(|event| match event.kind {
+                EventKind::ObstacleContact { actor: 0, obstacle, .. } if event.time_s >= first.time_s => {
+                    Some(Crash::Obstacle(obstacle))
+                }
+                _ => None,
+            }),
+            _ => self.metrics.contact.as_ref().map(|contact| Crash::RoadUser(contact.actor)),
+        }
+    }
+}
+
 impl std::ops::Deref for JudgedRun {
     type Target = Judgement;
 
@@ -89,6 +118,11 @@ impl std::ops::Deref for JudgedRun {
 }
 
 impl Judgement {
+    /// The findings that are failures, by kind.
+    pub fn failures(&self) -> impl Iterator<Item = FindingKind> {
+        self.findings.iter().map(|finding| finding.kind).filter(|kind| kind.is_failure())
+    }
+
     /// Whether the ego failed, by the profile's criteria.
     pub fn failed(&self) -> bool {
         self.findings.iter().any(|finding| finding.kind.is_failure())

@@ -2,11 +2,12 @@
 
 use crate::metrics::{FindingKind, Timed};
 use crate::rollout::TerminationKind;
+use crate::run::JudgedRun;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// The triages' format tag.
-pub const TRIAGE_FORMAT: &str = "recrash.triage/1";
+pub const TRIAGE_FORMAT: &str = "recrash.triage/2";
 
 /// The ego that stands for a competent and careful driver.
 pub const REFERENCE_EGO: &str = "reference";
@@ -21,13 +22,15 @@ pub enum FailureClass {
     Quirk,
     /// The ego `reference` fails, but somebody who reacts sooner or brakes harder does not.
     BeyondReference,
-    /// Everybody fails.
+    /// Everybody fails as the system under test does.
     Unavoidable,
+    /// Nobody gets through, but not all fail as the system under test does: whether its failure can be avoided is not told.
+    Unclear,
 }
 
 impl FailureClass {
     /// Every class, in the order of tables.
-    pub const ALL: [Self; 4] = [Self::Avoidable, Self::Quirk, Self::BeyondReference, Self::Unavoidable];
+    pub const ALL: [Self; 5] = [Self::Avoidable, Self::Quirk, Self::BeyondReference, Self::Unavoidable, Self::Unclear];
 
     /// For tables and sentences.
     pub fn label(self) -> &'static str {
@@ -36,6 +39,7 @@ impl FailureClass {
             Self::Quirk => "quirk",
             Self::BeyondReference => "beyond reference",
             Self::Unavoidable => "unavoidable",
+            Self::Unclear => "unclear",
         }
     }
 
@@ -46,7 +50,48 @@ impl FailureClass {
             Self::Avoidable => "the ego `reference` avoids it, another ego fails as well",
             Self::Quirk => "only the system under test fails; every other ego avoids it",
             Self::BeyondReference => "the ego `reference` fails, one that reacts sooner avoids it",
-            Self::Unavoidable => "every ego fails",
+            Self::Unavoidable => "every ego fails in the same way",
+            Self::Unclear => "no ego gets through, but not all fail in the same way",
+        }
+    }
+}
+
+/// How another ego fared with what the system under test fails by.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Fared {
+    /// Where the system under test crashes, it does not; else it does not fail at all.
+    Avoids,
+    /// It fails in the same way: it crashes with the same one first, or comes as near.
+    Alike,
+    /// It fails in another way.
+    Otherwise,
+}
+
+impl Fared {
+    /// How the other run of a scenario that the system fails compares with the system's.
+    pub fn of(system: &JudgedRun, other: &JudgedRun) -> Self {
+        let crash = other.first_crash();
+        let is_alike = match system.first_crash() {
+            Some(_) if crash.is_none() => return Self::Avoids,
+            None if !other.failed() => return Self::Avoids,
+            Some(first) => crash == Some(first),
+            // Who touches somebody came near as well.
+            None => {
+                let failures = |run: &JudgedRun| run.failures().collect::<Vec<_>>();
+                let came_near = failures(system).contains(&FindingKind::NearMiss) && crash.is_some();
+                came_near || failures(system).iter().any(|kind| failures(other).contains(kind))
+            }
+        };
+        if is_alike { Self::Alike } else { Self::Otherwise }
+    }
+
+    /// For tables and sentences.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Avoids => "avoids it",
+            Self::Alike => "does not",
+            Self::Otherwise => "fails otherwise",
         }
     }
 }
@@ -58,8 +103,8 @@ pub struct EgoOutcome {
     pub ego: String,
     /// Whether it failed, by the profile's criteria.
     pub failed: bool,
-    /// Whether it avoids the failure: where the system under test crashes, it does not; else it does not fail at all.
-    pub avoids: bool,
+    /// How it fared with what the system under test fails by.
+    pub fared: Fared,
     /// Kinds of its findings, each once, failures first.
     pub findings: Vec<FindingKind>,
     /// Its least box gap to a scripted partner. [m]
@@ -82,20 +127,19 @@ pub struct Triage {
 }
 
 impl Triage {
-    /// The triage of a scenario that the system under test fails with findings of these kinds.
-    pub fn new(system: &[FindingKind], mut others: Vec<EgoOutcome>) -> Self {
-        let crashes = |kinds: &[FindingKind]| kinds.iter().any(|kind| kind.is_crash());
-        for other in &mut others {
-            other.avoids = if crashes(system) { !crashes(&other.findings) } else { !other.failed };
-        }
-        let class = if !others.is_empty() && others.iter().all(|other| other.avoids) {
+    /// The triage of a scenario that the system under test fails, of how the others fared there.
+    pub fn new(others: Vec<EgoOutcome>) -> Self {
+        let avoids = |other: &EgoOutcome| other.fared == Fared::Avoids;
+        let class = if !others.is_empty() && others.iter().all(avoids) {
             FailureClass::Quirk
-        } else if others.iter().any(|other| other.ego == REFERENCE_EGO && other.avoids) {
+        } else if others.iter().any(|other| other.ego == REFERENCE_EGO && avoids(other)) {
             FailureClass::Avoidable
-        } else if others.iter().any(|other| other.avoids) {
+        } else if others.iter().any(avoids) {
             FailureClass::BeyondReference
-        } else {
+        } else if others.iter().all(|other| other.fared == Fared::Alike) {
             FailureClass::Unavoidable
+        } else {
+            FailureClass::Unclear
         };
         Self { format: TRIAGE_FORMAT.to_owned(), class, others }
     }
@@ -103,41 +147,42 @@ impl Triage {
 
 #[cfg(test)]
 mod tests {
+    use super::Fared::{Alike, Avoids, Otherwise};
     use super::*;
-    use FindingKind::{Contact, HardBraking, NearMiss};
 
-    fn class(system: FindingKind, others: &[(&str, FindingKind)]) -> FailureClass {
-        let outcome = |&(ego, finding): &(&str, FindingKind)| EgoOutcome {
+    fn class(others: &[(&str, Fared)]) -> FailureClass {
+        let outcome = |&(ego, fared): &(&str, Fared)| EgoOutcome {
             ego: ego.to_owned(),
-            failed: finding.is_failure(),
-            avoids: false,
-            findings: vec![finding],
+            failed: fared != Avoids,
+            fared,
+            findings: Vec::new(),
             min_gap: None,
             termination: TerminationKind::Arrived,
             state_hash: String::new(),
         };
-        Triage::new(&[system], others.iter().map(outcome).collect()).class
+        Triage::new(others.iter().map(outcome).collect()).class
     }
 
     #[test]
     fn classes_are_those_of_the_page() {
-        let of = |idm, reference| class(Contact, &[("idm", idm), ("reference", reference)]);
-        assert_eq!(of(HardBraking, HardBraking), FailureClass::Quirk);
-        assert_eq!(of(Contact, HardBraking), FailureClass::Avoidable);
-        assert_eq!(of(HardBraking, Contact), FailureClass::BeyondReference);
-        assert_eq!(of(Contact, Contact), FailureClass::Unavoidable);
-        assert_eq!(class(Contact, &[]), FailureClass::Unavoidable);
+        let of = |idm, reference| class(&[("idm", idm), ("reference", reference)]);
+        assert_eq!(of(Avoids, Avoids), FailureClass::Quirk);
+        assert_eq!(of(Alike, Avoids), FailureClass::Avoidable);
+        assert_eq!(of(Otherwise, Avoids), FailureClass::Avoidable);
+        assert_eq!(of(Avoids, Alike), FailureClass::BeyondReference);
+        assert_eq!(of(Alike, Alike), FailureClass::Unavoidable);
+        assert_eq!(class(&[]), FailureClass::Unavoidable);
     }
 
     #[test]
-    fn who_only_comes_near_avoids_a_crash_but_not_a_near_miss() {
-        let others = [("idm", NearMiss), ("reference", NearMiss)];
-        assert_eq!(class(Contact, &others), FailureClass::Quirk);
-        assert_eq!(class(NearMiss, &others), FailureClass::Unavoidable);
+    fn who_crashes_with_another_does_not_make_a_failure_unavoidable() {
+        assert_eq!(class(&[("idm", Alike), ("reference", Otherwise)]), FailureClass::Unclear);
+        assert_eq!(class(&[("idm", Otherwise), ("reference", Otherwise)]), FailureClass::Unclear);
+        assert_eq!(class(&[("idm", Avoids), ("reference", Otherwise)]), FailureClass::BeyondReference);
     }
 
     #[test]
     fn the_reference_itself_may_be_under_test() {
-        assert_eq!(class(Contact, &[("metadrive-idm", Contact), ("idm", NearMiss)]), FailureClass::BeyondReference);
+        assert_eq!(class(&[("metadrive-idm", Alike), ("idm", Avoids)]), FailureClass::BeyondReference);
     }
 }

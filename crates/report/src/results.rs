@@ -149,7 +149,7 @@ pub fn other_egos(triage: &Triage) -> String {
     let told = triage.others.iter().map(|other| {
         let gap =
             other.min_gap.and_then(|gap| fixed(gap.value, 2)).map_or("no gap".to_owned(), |gap| format!("{gap} m"));
-        format!("{} {}, {gap}", other.ego, if other.avoids { "avoids it" } else { "does not" })
+        format!("{} {}, {gap}", other.ego, other.fared.label())
     });
     told.collect::<Vec<_>>().join("; ")
 }

@@ -4,13 +4,15 @@ use recrash_lab::minimal::{minimal, without_each};
 use recrash_lab::parity::random_scenario;
 use recrash_lab::perturb::{Nudge, Who, nudged};
 use recrash_lab::robustness::{Robustness, robustness};
-use recrash_lab::{Scoring, run_scenario, run_scenario_in};
+use recrash_lab::{Scoring, run_scenario, run_scenario_in, triage};
 use recrash_model::Seed;
 use recrash_model::geometry::OrientedBox;
 use recrash_model::profile::SystemProfile;
 use recrash_model::rollout::{ActorState, Substeps};
 use recrash_model::scenario::ScenarioDraft;
+use recrash_model::triage::{FailureClass, Fared};
 use recrash_model::tuning::Aim;
+use recrash_roads::Simulator;
 use recrash_sim::{Ego, Native};
 
 /// Failures that are looked at.
@@ -190,4 +192,42 @@ fn a_search_for_severity_takes_the_worse_contact_and_one_for_failures_does_not_a
     assert!((objective(Aim::Severity, 3.0) - objective(Aim::Severity, 9.0) - 6.0).abs() < 1e-9);
     // A contact of any harm is nearer to what is looked for than a gap.
     assert!(objective(Aim::Severity, 0.0) < 0.1);
+}
+
+#[test]
+fn a_failure_is_unavoidable_only_where_every_ego_touches_the_same_one() {
+    let (system, profile) = (Native::new(Ego::MetadriveIdm), profile());
+    let egos = [Ego::Idm, Ego::Reference];
+    let others: Vec<Box<dyn Simulator>> = egos.iter().map(|&ego| Box::new(Native::new(ego)) as _).collect();
+    let mut of = [0; FailureClass::ALL.len()];
+    for draft in failing(&system) {
+        let scenario = recrash_roads::check(draft).unwrap().value;
+        let failed = run_scenario(&scenario, &system, &profile, None).unwrap();
+        let (found, _) = triage(&scenario, &failed, &profile, &others).unwrap();
+        of[FailureClass::ALL.iter().position(|&class| class == found.class).unwrap()] += 1;
+        // Asked of the rollouts, and not of the findings.
+        let touched = |run: &recrash_model::run::JudgedRun| run.rollout.first_ego_contact().map(|(other, ..)| other);
+        let alike =
+            |ego| touched(&run_scenario(&scenario, &Native::new(ego), &profile, None).unwrap()) == touched(&failed);
+        if found.class == FailureClass::Unavoidable && touched(&failed).is_some() {
+            assert!(egos.into_iter().all(alike), "{}", scenario.draft().id);
+        }
+    }
+    println!("of {FAILURES} failures: {:?}", FailureClass::ALL.iter().zip(of).collect::<Vec<_>>());
+    assert!(of.iter().filter(|count| **count > 0).count() >= 3, "{of:?}");
+}
+
+#[test]
+fn who_touches_another_fails_otherwise() {
+    let (system, profile) = (Native::new(Ego::MetadriveIdm), profile());
+    let runs = failing(&system)
+        .into_iter()
+        .map(|draft| run_scenario(&recrash_roads::check(draft).unwrap().value, &system, &profile, None).unwrap());
+    let crash = runs.into_iter().find(|run| run.metrics.contact.is_some()).unwrap();
+    assert_eq!(Fared::of(&crash, &crash), Fared::Alike);
+    let mut other = crash.clone();
+    other.judgement.metrics.contact.as_mut().unwrap().actor += 1;
+    assert_eq!(Fared::of(&crash, &other), Fared::Otherwise);
+    other.judgement.findings.clear();
+    assert_eq!(Fared::of(&crash, &other), Fared::Avoids);
 }

@@ -224,7 +224,7 @@ fn judge(bench: &Bench, cluster: &Cluster) -> Result<Files, PipelineError> {
         (names::tuned_recorded_run(id), to_compact_json(&recorded)),
     ];
     if run.failed() {
-        let (triage, reference) = triage(&scenario, suite.ego(), &run.findings, suite.profile(), &built_in())?;
+        let (triage, reference) = triage(&scenario, &run, suite.profile(), &built_in())?;
         files.push((names::triage(id), to_json(&triage)));
         files.extend(reference.map(|run| (names::reference_run(id), to_compact_json(&run))));
     }

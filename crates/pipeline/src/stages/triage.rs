@@ -30,7 +30,7 @@ fn work(bench: &Bench, cluster: &Cluster) -> Result<Files, PipelineError> {
     run.judgement.preventability = preventability(&run.rollout);
     let mut files = vec![(names::tuned_run(id), to_compact_json(&run))];
     if run.failed() {
-        let (triage, reference) = triage(&scenario, suite.ego(), &run.findings, suite.profile(), &built_in())?;
+        let (triage, reference) = triage(&scenario, &run, suite.profile(), &built_in())?;
         files.push((names::triage(id), to_json(&triage)));
         files.extend(reference.map(|run| (names::reference_run(id), to_compact_json(&run))));
     }

@@ -13,7 +13,7 @@ use recrash_model::scenario::*;
 use recrash_model::selection::*;
 use recrash_model::surroundings::{Lighting, Surface, Weather};
 use recrash_model::template::*;
-use recrash_model::triage::{EgoOutcome, Triage};
+use recrash_model::triage::{EgoOutcome, Fared, Triage};
 use recrash_model::tuning::*;
 use recrash_model::zones::ContactZone;
 use recrash_model::{Diagnostic, Location, Seed};
@@ -382,13 +382,13 @@ fn triage(number: usize, careful: &RunView) -> Triage {
     let outcome = |ego: &str, failed: bool| EgoOutcome {
         ego: ego.to_owned(),
         failed,
-        avoids: !failed,
+        fared: if failed { Fared::Alike } else { Fared::Avoids },
         findings: if failed { vec![FindingKind::Contact] } else { Vec::new() },
         min_gap: if failed { Some(Timed { value: 0.0, time_s: 4.2 }) } else { careful.metrics.min_gap },
         termination: if failed { TerminationKind::Contact } else { TerminationKind::Arrived },
         state_hash: careful.rollout.state_hash.clone(),
     };
-    Triage::new(&[FindingKind::Contact], vec![outcome("idm", number % 4 >= 2), outcome("reference", number % 2 == 1)])
+    Triage::new(vec![outcome("idm", number % 4 >= 2), outcome("reference", number % 2 == 1)])
 }
 
 /// Scenarios that are driven; a larger suite repeats them over records of its own. [count]

@@ -148,8 +148,8 @@ const OF_ACCOUNTS: [(&str, &str); 11] = [
         "Failures are counted by how they came about. The ego had stood in its own way for a second and somebody drove into it: that has nothing to do with what it drove. It moved, slowed or had just stopped, and was struck from where it does not look, mostly from behind: that hardly has. All others are by what it did or did not do.",
     ),
     (
-        "Quirk, avoidable, beyond reference, unavoidable",
-        "Of a failure: every other ego avoids it in the same scenario; the ego “reference” does, and another fails; “reference” fails, and another avoids it; every ego fails.",
+        "Quirk, avoidable, beyond reference, unavoidable, unclear",
+        "Of a failure: every other ego avoids it in the same scenario; the ego “reference” does, and another fails; “reference” fails, and another avoids it; every ego fails in the same way; nobody gets through, but not all by the same contact.",
     ),
     (
         "Avoided by all, some, no reference driver",

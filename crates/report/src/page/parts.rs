@@ -117,7 +117,7 @@ pub fn class_chip(class: FailureClass) -> Markup {
     let kind = match class {
         FailureClass::Avoidable | FailureClass::Quirk => "bad",
         FailureClass::BeyondReference => "odd",
-        FailureClass::Unavoidable => "none",
+        FailureClass::Unavoidable | FailureClass::Unclear => "none",
     };
     html! { span.chip.(kind) { (class.label()) } }
 }

@@ -11,7 +11,7 @@ use recrash_model::metrics::{FindingKind, Timed};
 use recrash_model::preventability::Preventability;
 use recrash_model::rollout::TerminationKind;
 use recrash_model::severity::Severity;
-use recrash_model::triage::{FailureClass, Triage};
+use recrash_model::triage::{FailureClass, Fared, Triage};
 
 /// Scenarios of a class that are named; the table finds the rest. [count]
 const LONGEST_LIST: usize = 30;
@@ -109,12 +109,21 @@ pub fn of_case(case: Case) -> Markup {
             caption.hidden-text { "Every ego on this scenario" }
             thead { tr { th scope="col" { "Ego" } th scope="col" { "Avoids it" } th scope="col" { "Result" } th scope="col" { "Least gap" } th scope="col" { "Ended by" } th scope="col" { "Findings" } } }
             tbody {
-                (row(html! { b { (words::clean(case.context.ego, 60)) } " (under test)" }, false, Result::of(Some(&last.run.judgement)), last.metrics.min_gap, last.metrics.termination, &kinds))
+                (row(html! { b { (words::clean(case.context.ego, 60)) } " (under test)" }, "no", Result::of(Some(&last.run.judgement)), last.metrics.min_gap, last.metrics.termination, &kinds))
                 @for other in &triage.others {
-                    (row(html! { (words::clean(&other.ego, 60)) }, other.avoids, if other.failed { Result::Failed } else { Result::Passed }, other.min_gap, other.termination, &other.findings))
+                    (row(html! { (words::clean(&other.ego, 60)) }, avoids(other.fared), if other.failed { Result::Failed } else { Result::Passed }, other.min_gap, other.termination, &other.findings))
                 }
             }
         } }
+    }
+}
+
+/// Whether an ego avoids what the system under test fails by, in a word or two.
+fn avoids(fared: Fared) -> &'static str {
+    match fared {
+        Fared::Avoids => "yes",
+        Fared::Alike => "no",
+        Fared::Otherwise => "fails otherwise",
     }
 }
 
@@ -166,7 +175,7 @@ fn in_their_place(found: &Preventability) -> Markup {
 
 fn row(
     ego: Markup,
-    avoids: bool,
+    avoids: &str,
     result: Result,
     gap: Option<Timed>,
     ended: TerminationKind,
@@ -175,7 +184,7 @@ fn row(
     html! {
         tr {
             th scope="row" { (ego) }
-            td { @if avoids { "yes" } @else { "no" } }
+            td { (avoids) }
             td { (parts::result_chip(result)) }
             td { (parts::timed(gap, 2, "m", "no scripted partner took part")) }
             td { (ended.label()) }
