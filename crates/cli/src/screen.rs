@@ -40,6 +40,29 @@ pub fn error(text: fmt::Arguments<'_>) {
     let _ = writeln!(anstream::stderr(), "{}", clean(&text.to_string()));
 }
 
+/// Prints a sentence for people on the standard output. On a terminal it is broken between words, and goes on a step further in.
+pub fn sentence(text: &str) {
+    out(format_args!("{}", broken(text, told_width())));
+}
+
+/// A sentence in lines of this width, where there is one.
+fn broken(text: &str, width: Option<usize>) -> String {
+    let indent = " ".repeat(text.len() - text.trim_start().len() + 2);
+    let (mut broken, mut column) = (String::new(), 0);
+    for word in text.split_inclusive(' ') {
+        let length = word.chars().count();
+        if column > indent.len() && width.is_some_and(|width| column + word.trim_end().chars().count() > width) {
+            broken.truncate(broken.trim_end().len());
+            broken.push('\n');
+            broken.push_str(&indent);
+            column = indent.len();
+        }
+        broken.push_str(word);
+        column += length;
+    }
+    broken
+}
+
 /// Writes for programs on the standard output, as it is.
 pub fn raw(bytes: &[u8]) {
     written(std::io::stdout().write_all(bytes));
@@ -66,9 +89,14 @@ pub fn finish() -> std::io::Result<()> {
 
 /// Columns of the terminal; those of the variable `COLUMNS` where it is set.
 pub fn width() -> usize {
+    told_width().unwrap_or(WIDTH_WITHOUT_TERMINAL)
+}
+
+/// The same, where there is a terminal or the variable.
+fn told_width() -> Option<usize> {
     let set = std::env::var("COLUMNS").ok().and_then(|columns| columns.trim().parse().ok());
     let asked = || terminal_size::terminal_size_of(std::io::stdout()).map(|(width, _)| usize::from(width.0));
-    set.or_else(asked).filter(|columns| *columns > 0).unwrap_or(WIDTH_WITHOUT_TERMINAL).max(LEAST_WIDTH)
+    set.or_else(asked).filter(|columns| *columns > 0).map(|columns| columns.max(LEAST_WIDTH))
 }
 
 /// Text in a colour or weight.
@@ -141,6 +169,14 @@ pub fn plain(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn sentences_are_broken_between_words_where_there_is_a_width() {
+        let text = "  one two three four";
+        assert_eq!(broken(text, None), text);
+        assert_eq!(broken(text, Some(11)), "  one two\n    three\n    four");
+        assert_eq!(broken("averyverylongword next", Some(8)), "averyverylongword\n  next");
+    }
 
     #[test]
     fn a_stranger_s_escapes_are_told_and_our_colours_stay() {

@@ -118,6 +118,11 @@ impl Table {
         (shown, left_out)
     }
 
+    /// Whether a column is shown in the terminal's width.
+    pub fn shows(&self, name: &str) -> bool {
+        self.fitting(width()).0.iter().any(|&at| self.header[at] == name)
+    }
+
     /// The table in so many columns of characters.
     fn render(&self, width: usize) -> String {
         let (shown, left_out) = self.fitting(width);

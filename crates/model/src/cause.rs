@@ -128,8 +128,9 @@ impl Failures {
 
 impl std::fmt::Display for Failures {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let [standing, moving, otherwise] = self.told().map(|(count, words)| format!("{count} {words}"));
-        write!(f, "{standing}, {moving}, {otherwise}")
+        let told = self.told().into_iter().filter(|(count, _)| *count > 0);
+        let told: Vec<String> = told.map(|(count, words)| format!("{count} {words}")).collect();
+        f.write_str(&told.join(", "))
     }
 }
 
@@ -144,5 +145,6 @@ mod tests {
         assert_eq!((counts.struck_standing, counts.struck_moving, counts.otherwise, counts.total()), (1, 1, 2, 4));
         let words = "1 struck while it stood, 1 struck from where it does not look while it moved or had just stopped, 2 otherwise";
         assert_eq!(counts.to_string(), words);
+        assert_eq!(Failures { otherwise: 2, ..Failures::default() }.to_string(), "2 otherwise");
     }
 }

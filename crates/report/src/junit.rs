@@ -36,6 +36,11 @@ pub fn render(suite: &SuiteView) -> String {
     text
 }
 
+/// Whether a run is no failure, and no pass either.
+fn says_nothing(run: &RunRow) -> bool {
+    !run.failed() && run.situation_met() == Some(false)
+}
+
 /// The cases of one kind of run.
 struct Group<'a> {
     name: &'static str,
@@ -61,7 +66,7 @@ impl Group<'_> {
     }
 
     fn skipped(&self) -> usize {
-        self.cases.iter().filter(|case| (self.run)(case).is_none()).count()
+        self.cases.iter().filter(|case| (self.run)(case).is_none_or(says_nothing)).count()
     }
 
     /// What the whole run has in common stands in the first group alone: readers that put all groups into one refuse a
@@ -145,6 +150,10 @@ fn test_case(
             writer.create_element("skipped").with_attributes(attributes(&[("message", why)])).write_empty()?;
             return Ok(());
         };
+        if says_nothing(run) {
+            let why = [("message", "the system never came into the situation of the record: no failure, and no pass")];
+            writer.create_element("skipped").with_attributes(attributes(&why)).write_empty()?;
+        }
         if run.failed() {
             let failures: Vec<_> = run.findings.iter().filter(|finding| finding.kind.is_failure()).collect();
             let kinds: Vec<_> = failures.iter().map(|finding| finding.kind.label()).collect();
@@ -153,8 +162,9 @@ fn test_case(
             let harm = run.severity.as_ref().and_then(|severity| fixed(severity.harm_mps(), 1));
             let harm = harm.map_or_else(String::new, |harm| format!(", largest delta-v {harm} m/s"));
             let struck = if struck_standing(run) { ", struck while it stood" } else { "" };
+            let met = if run.situation_met() == Some(false) { ", outside the situation of the record" } else { "" };
             let by_tuning = if is_last && case.found_by_tuning() { ", found by tuning alone" } else { "" };
-            let message = format!("{}{struck}{class}{harm}{by_tuning}", kinds.join(", "));
+            let message = format!("{}{struck}{class}{harm}{met}{by_tuning}", kinds.join(", "));
             let kind = if struck.is_empty() { kinds.first().copied().unwrap_or_default() } else { "struck standing" };
             let failure = writer.create_element("failure");
             let failure = failure.with_attributes(attributes(&[("type", kind), ("message", &message)]));

@@ -92,6 +92,7 @@ fn row(suite: &SuiteView, case: &CaseRow, name: &str, run: Option<&RunRow>) -> V
     let t = case.template;
     let cluster = suite.cluster(case);
     let origin = case.origin.as_ref().map_or("", |origin| origin.name());
+    let is_recorded = run.is_some() && case.account.is_some() && name == case.names().before;
     let mut row = vec![
         case.scenario_id.clone(),
         name.to_owned(),
@@ -104,13 +105,17 @@ fn row(suite: &SuiteView, case: &CaseRow, name: &str, run: Option<&RunRow>) -> V
         origin.to_owned(),
         case.told.as_ref().map_or_else(String::new, ToString::to_string),
         suite.profile.name.clone(),
-        suite.ego.clone(),
+        if is_recorded { "recorded".to_owned() } else { suite.ego.clone() },
         suite.simulator.clone(),
         suite.seed.to_string(),
     ];
     match run {
         // By accounts the recorded driver's run is held against the record, by templates each.
-        Some(run) => row.extend(measured(case, run, case.account.is_none() || name == case.names().before)),
+        Some(run) => {
+            // Who drove in the record is not under test.
+            row.push(if is_recorded { String::new() } else { run.failed().to_string() });
+            row.extend(measured(case, run, case.account.is_none() || is_recorded));
+        }
         None => row.extend(std::iter::repeat_n(String::new(), 26)),
     }
     // The triage is about the last run.
@@ -138,7 +143,6 @@ fn row(suite: &SuiteView, case: &CaseRow, name: &str, run: Option<&RunRow>) -> V
     row.push(run.and_then(|run| run.cause).map_or_else(String::new, |cause| cause.label().to_owned()));
     let bracket = run.and_then(|run| run.preventability.as_ref()).map(Preventability::bracket);
     row.push(bracket.map_or_else(String::new, |bracket| bracket.label().to_owned()));
-    let is_recorded = account.is_some() && name == case.names().before;
     row.push(run.filter(|_| !is_recorded).map_or_else(String::new, |run| struck_standing(run).to_string()));
     row.push(if is_last { case.found_by_tuning().to_string() } else { String::new() });
     row
@@ -163,7 +167,6 @@ fn measured(case: &CaseRow, run: &RunRow, tells: bool) -> Vec<String> {
     let kinds: Vec<&str> = run.finding_kinds().into_iter().map(|kind| kind.label()).collect();
     let named = |checks: Vec<&Check>| checks.iter().map(|check| check.kind.label()).collect::<Vec<_>>().join("; ");
     vec![
-        run.failed().to_string(),
         // Nobody's crash has no record to be true to.
         case.faithful().filter(|_| tells).map_or("", |_| run.faithful().label()).to_owned(),
         named(run.verdict.failures().collect()),

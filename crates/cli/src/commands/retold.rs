@@ -3,7 +3,7 @@
 use super::reconstruct::not_drawn;
 use super::simulate::REGULATION_DRIVERS;
 use crate::output::title;
-use crate::screen::{bold, println, yellow};
+use crate::screen::{bold, println, sentence, yellow};
 use crate::table::{Cell, number, table};
 use recrash_model::account::CrashType;
 use recrash_model::metrics::Answer;
@@ -24,8 +24,10 @@ enum Verdict {
     Fail,
     /// It failed, and stood when it was struck.
     Struck,
-    /// It did not fail.
+    /// It did not fail, where it came into the situation of the record.
     Pass,
+    /// It did not fail, and never came into that situation: no pass.
+    NotMet,
     /// It was parked: nothing to test.
     Parked,
     /// It could not be run.
@@ -37,6 +39,7 @@ impl Verdict {
         match &case.tuned {
             Some(run) if run.struck_standing() => Self::Struck,
             Some(run) if run.failed => Self::Fail,
+            Some(_) if case.situation_met == Some(false) => Self::NotMet,
             Some(_) => Self::Pass,
             None if case.recorded.is_some() && case.failure.is_none() => Self::Parked,
             None => Self::NotRun,
@@ -48,6 +51,7 @@ impl Verdict {
             Self::Fail => "FAIL",
             Self::Struck => "STRUCK",
             Self::Pass => "PASS",
+            Self::NotMet => "NOT MET",
             Self::Parked => "parked",
             Self::NotRun => "NOT RUN",
         }
@@ -91,15 +95,15 @@ pub fn show(summary: &Summary, accounts: &AccountSummary, dir: &Path) {
     worst(&summary.cases);
     result(summary);
     let whole: usize = accounts.types.iter().map(|share| share.whole).sum();
-    println!(
+    sentence(&format!(
         "records: {} of {} readable incidents are told, no told fact shown otherwise: {whole} with every told fact shown, {} with told facts \
-         that are not drawn; {} are in this suite; invented: 0\n  {}",
+         that are not drawn; {} are in this suite; invented: 0",
         accounts.told,
         accounts.readable,
         accounts.told.saturating_sub(whole),
         summary.cases.len(),
-        not_drawn(&accounts.facts),
-    );
+    ));
+    sentence(&format!("  {}", not_drawn(&accounts.facts)));
     if summary.sample {
         println!("  the built-in sample, invented; give real crash files with --records FILE");
     }
@@ -129,7 +133,8 @@ fn worst(cases: &[CaseSummary]) {
     let header = ["verdict", "scenario", "what failed", "found", DELTA_V, "situation", "crash type", "as told"];
     let spare = ["as told", "crash type", "situation", "found", DELTA_V];
     let mut rows = table(&header).named_by("scenario").whole("what failed").without_first(&spare);
-    for case in worst_first(cases).into_iter().take(CASES_SHOWN) {
+    let worst: Vec<&CaseSummary> = worst_first(cases).into_iter().take(CASES_SHOWN).collect();
+    for case in &worst {
         let as_told = match case.faithful() {
             Some(Answer::Yes) => "yes",
             Some(Answer::Unchecked) => "not all checked",
@@ -154,14 +159,22 @@ fn worst(cases: &[CaseSummary]) {
         ]);
     }
     println!("{rows}");
-    println!(
-        "  STRUCK: it failed, and stood when it was struck: nothing to do with what it drove\n  found: as is, in the crash as \
-         reconstructed; by tuning, only within what the report leaves open"
-    );
+    let shown = |verdict| worst.iter().any(|case| Verdict::of(case) == verdict);
+    if shown(Verdict::Struck) {
+        sentence("  STRUCK: it failed, and stood when it was struck: nothing to do with what it drove");
+    }
+    if shown(Verdict::NotMet) {
+        sentence("  NOT MET: it never came into the situation of the record: no failure, and no pass");
+    }
+    if rows.shows("found") {
+        sentence("  found: as is, in the crash as reconstructed; by tuning, only within what the report leaves open");
+    }
 }
 
 fn failures(runs: &TestedRuns) -> String {
-    format!("{} of {}: {}", runs.failures.total(), runs.met, runs.failures)
+    let total = runs.failures.total();
+    let of = format!("{total} of {}", runs.met);
+    if total == 0 { of } else { format!("{of}: {}", runs.failures) }
 }
 
 fn result(summary: &Summary) {
@@ -170,35 +183,41 @@ fn result(summary: &Summary) {
     let parked = count(&|case| Verdict::of(case) == Verdict::Parked);
     let not_run = count(&|case| Verdict::of(case) == Verdict::NotRun);
     println!("\n{} {} fails, where it came into the situation of the record,", bold("result:"), summary.ego);
-    println!("  as reconstructed, from the handover on: {}", failures(&first));
-    println!(
+    sentence(&format!("  as reconstructed, from the handover on: {}", failures(&first)));
+    sentence(&format!(
         "  after tuning within what reports leave open: {}; {} by tuning alone",
         failures(&last),
         count(&CaseSummary::found_by_tuning)
-    );
-    println!(
-        "  {} scenarios: {} driven, {} of them never in the situation; {parked} parked, nothing to test{}",
+    ));
+    let outside = count(&|case| case.situation_met == Some(false) && case.tuned.as_ref().is_some_and(|run| run.failed));
+    let also = |before: &str, count: usize, words: &str| {
+        if count > 0 { format!("{before}{count} {words}") } else { String::new() }
+    };
+    sentence(&format!(
+        "  {} scenarios: {} driven, {} of them never in the situation{}{}{}",
         summary.cases.len(),
-        first.ran,
-        first.ran - first.met,
-        if not_run > 0 { format!("; {not_run} not run") } else { String::new() },
-    );
+        last.ran,
+        last.ran - last.met,
+        also(", where ", outside, "failed in another way"),
+        also("; ", parked, "parked, nothing to test"),
+        also("; ", not_run, "not run"),
+    ));
     let edited = count(&|case| !case.edited.is_empty());
     if edited > 0 {
         println!("  {edited} edited by hand, and kept");
     }
     let listed = |counts: Vec<(&str, usize)>| {
-        let listed: Vec<String> = counts.into_iter().map(|(label, count)| format!("{count} {label}")).collect();
+        let listed: Vec<String> = counts.into_iter().map(|(label, count)| format!("{label} {count}")).collect();
         listed.join(", ")
     };
     let causes = summary.causes();
     if !causes.is_empty() {
         let causes = causes.iter().map(|(cause, count)| (cause.label(), *count)).collect();
-        println!("after tuning, by cause: {}", listed(causes));
+        sentence(&format!("after tuning, by cause: {}", listed(causes)));
         let classes = summary.failure_classes().into_iter().map(|(class, count)| (class.label(), count)).collect();
-        println!("  other egos in the same scenario: {}", listed(classes));
+        sentence(&format!("  other egos in the same scenario: {}", listed(classes)));
         let brackets = summary.brackets().into_iter().map(|(bracket, count)| (bracket.label(), count)).collect();
-        println!("  of contacts, {REGULATION_DRIVERS}: {}", listed(brackets));
+        sentence(&format!("  of contacts, {REGULATION_DRIVERS}: {}", listed(brackets)));
     }
 }
 

@@ -5,6 +5,17 @@ use crate::output::{self, Output};
 use crate::screen::{eprintln, println};
 use recrash_pipeline::{PipelineError, Stage, Suite, check_choices, run_stage, unfaithful};
 
+/// The command of the stage that comes then.
+fn next(stage: &str) -> Option<&'static str> {
+    Some(match stage {
+        "narrate" => "design",
+        "design" => "simulate",
+        "simulate" => "tune",
+        "tune" | "triage" => "report",
+        _ => return None,
+    })
+}
+
 /// Runs a stage of a suite, and the stages that belong to it, as one.
 ///
 /// # Errors
@@ -36,7 +47,11 @@ pub fn run(args: &SuiteArgs, stages: &[Stage], output: Output) -> Result<(), Pip
         output::json(&serde_json::json!({ "stage": name, "done": done, "skipped": skipped, "unfaithful": lost }));
     } else if !output.quiet {
         output::remark_list(&lost, "told by --json");
-        println!("{name}: {done} units done, {skipped} there already, in {}", suite.store().dir().display());
+        let dir = suite.store().dir().display();
+        println!("{name}: {done} units done, {skipped} there already, in {dir}");
+        if let Some(next) = next(name) {
+            println!("next: recrash {next} --out {dir}");
+        }
     }
     match lost.len() {
         0 => Ok(()),

@@ -79,6 +79,21 @@ fn junit_has_the_runs_as_reconstructed_and_the_tuned_ones_apart_and_counts_both(
 }
 
 #[test]
+fn a_run_that_never_came_into_the_situation_is_no_pass() {
+    let mut suite = retold();
+    let never = |run: &mut RunRow| run.judgement.verdict.checks[0].result = CheckResult::NotShown;
+    for number in [0, 3] {
+        let case = &mut suite.cases[number];
+        case.after.iter_mut().chain(&mut case.untuned).for_each(never);
+    }
+    let xml = junit(&suite);
+    assert!(xml.contains(" tests=\"6\" failures=\"3\" errors=\"0\" skipped=\"2\">"), "{xml}");
+    assert_eq!(xml.matches("<skipped message=\"the system never came into the situation").count(), 2, "{xml}");
+    assert_eq!(xml.matches("outside the situation of the record").count(), 1, "{xml}");
+    assert!(!junit(&retold()).contains("skipped message"));
+}
+
+#[test]
 fn the_table_has_a_row_for_each_run_and_marks_what_only_tuning_found() {
     let table = results_csv(&retold());
     let mut reader = csv::Reader::from_reader(table.as_bytes());
@@ -89,7 +104,9 @@ fn the_table_has_a_row_for_each_run_and_marks_what_only_tuning_found() {
         .iter()
         .map(|row| ["run", "failed", "struck_standing", "found_by_tuning"].map(|name| &row[at(name)]))
         .collect();
-    let recorded = ["as told", "true", "", ""];
+    let recorded = ["as told", "", "", ""];
+    let drove: Vec<&str> = rows.iter().take(2).map(|row| &row[at("ego")]).collect();
+    assert_eq!(drove, ["recorded", "metadrive-idm"]);
     assert_eq!(
         told,
         [
