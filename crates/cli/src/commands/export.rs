@@ -10,6 +10,7 @@ const EXAMPLES: &str = "\
 Examples:
   recrash export suite --to openscenario,scenic,metadrive,commonroad,scenarionet    in every format, in suite/exports/
   recrash export suite --to openscenario --as trajectory --to-dir t     partners on the way that was recorded
+  recrash export suite --to openscenario --designed --to-dir crashes    the crashes as reconstructed, before tuning
   recrash export suite/6-tuned/intersection-straight-straight-90101-317.json --to scenic --to-dir t
   recrash import suite/exports/openscenario/intersection-straight-straight-90101-317.xosc    and back
 
@@ -19,12 +20,15 @@ What each file holds, and what each tool takes for a position, a heading and a t
 #[derive(Debug, Clone, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct ExportArgs {
-    /// Folder of a suite, or a scenario file (JSON).
+    /// Folder of a suite, whose scenarios are taken as tuned, or a scenario file (JSON).
     #[arg(value_name = "SUITE|SCENARIO")]
     pub source: PathBuf,
     /// Formats, separated by commas: openscenario (with OpenDRIVE), scenic, metadrive, commonroad, scenarionet.
     #[arg(long, value_name = "FORMATS", value_delimiter = ',', required = true)]
     pub to: Vec<Format>,
+    /// Of a suite: the scenarios as designed, before tuning; by accounts, the crashes as reconstructed.
+    #[arg(long)]
+    pub designed: bool,
     /// How partners move: by their policies as actions, or on the trajectory that was recorded.
     #[arg(long = "as", value_name = "HOW", value_parser = ["actions", "trajectory"], default_value = "actions")]
     pub partners_as: String,
@@ -47,6 +51,7 @@ pub fn run(args: &ExportArgs, output: Output) -> Result<(), PipelineError> {
     let partners_as = if args.partners_as == "trajectory" { PartnersAs::Trajectory } else { PartnersAs::Actions };
     let report = recrash_pipeline::export(&ExportRequest {
         source: args.source.clone(),
+        designed: args.designed,
         formats: args.to.clone(),
         partners_as,
         target: args.to_dir.clone(),

@@ -21,7 +21,7 @@ Examples:
 #[derive(Debug, Clone, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct SweepArgs {
-    /// A scenario file, or the folder of a suite.
+    /// A scenario file, or the folder of a suite, whose scenarios are taken as tuned.
     #[arg(value_name = "SCENARIO|SUITE")]
     pub source: PathBuf,
     /// Rollouts.

@@ -79,6 +79,19 @@ fn every_scenario_of_a_suite_comes_back_with_the_state_hash_it_had() {
             assert_eq!(edits.collect::<Vec<_>>(), Vec::<&Value>::new(), "{source}");
         }
     }
+    let (code, shown) = case.run(&["export", "suite", "--to", "openscenario", "--designed", "--to-dir", "before"]);
+    assert_eq!(code, 0, "{shown}");
+    for (id, _) in case.scenarios() {
+        let imported = case.json(&[
+            "import",
+            &format!("before/openscenario/{id}.xosc"),
+            "--out",
+            &format!("{id}.json"),
+            "--simulate",
+        ]);
+        let designed = case.json(&["simulate", &format!("suite/4-scenarios/{id}.json")]);
+        assert_eq!(imported["run"]["rollout"]["state_hash"], designed["rollout"]["state_hash"], "{id}");
+    }
 }
 
 #[test]

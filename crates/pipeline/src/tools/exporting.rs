@@ -25,6 +25,8 @@ use std::path::{Path, PathBuf};
 pub struct ExportRequest {
     /// A suite's folder, or a scenario file.
     pub source: PathBuf,
+    /// Whether a suite's scenarios are taken as designed, and not as tuned.
+    pub designed: bool,
     /// Formats.
     pub formats: Vec<Format>,
     /// How partners move.
@@ -55,7 +57,7 @@ pub struct ExportReport {
 /// # Errors
 /// The source is no suite and no file, or the target holds other files already; then nothing is written.
 pub fn export(request: &ExportRequest) -> Result<ExportReport, PipelineError> {
-    let sources = sources(&request.source, request.trust)?;
+    let sources = sources(&request.source, request.designed, request.trust)?;
     let beside = if request.source.is_dir() { request.source.clone() } else { parent(&request.source) };
     let target = match &request.target {
         Some(target) => target.clone(),
@@ -159,7 +161,7 @@ fn parent(file: &Path) -> PathBuf {
     file.parent().map_or_else(PathBuf::new, Path::to_owned)
 }
 
-fn sources(source: &Path, trust: bool) -> Result<Vec<ScenarioSource>, PipelineError> {
+fn sources(source: &Path, designed: bool, trust: bool) -> Result<Vec<ScenarioSource>, PipelineError> {
     let Some(options) = source.is_dir().then(|| Suite::saved_options(source)).transpose()? else {
         let ego = load_profile(DEFAULT_PROFILE)?.ego;
         return Ok(vec![ScenarioSource { path: source.to_owned(), parameters: Vec::new(), ego }]);
@@ -175,7 +177,8 @@ fn sources(source: &Path, trust: bool) -> Result<Vec<ScenarioSource>, PipelineEr
         // A damaged log costs the ranges, not the scenario.
         let log: Option<TuneLog> = store.read_json(&names::tune_log(id)).ok();
         let parameters = log.map_or_else(Vec::new, |log| log.parameters);
-        ScenarioSource { path: store.path(&names::tuned(id)), parameters, ego: ego.clone() }
+        let name = if designed { names::scenario(id) } else { names::tuned(id) };
+        ScenarioSource { path: store.path(&name), parameters, ego: ego.clone() }
     };
     Ok(selection.clusters.iter().map(|cluster| of(&cluster.scenario_id)).collect())
 }
