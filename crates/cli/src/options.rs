@@ -91,6 +91,24 @@ pub struct ChoiceArgs {
     pub model_dir: Option<PathBuf>,
 }
 
+/// Options of a stage on its own.
+#[derive(Debug, Clone, Args)]
+pub struct StageArgs {
+    /// Folder of the suite, as with --out.
+    #[arg(value_name = "SUITE", conflicts_with = "out")]
+    folder: Option<PathBuf>,
+    #[command(flatten)]
+    suite: SuiteArgs,
+}
+
+impl StageArgs {
+    /// The suite and its options.
+    pub fn suite(&self) -> SuiteArgs {
+        let out = self.folder.as_ref().unwrap_or(&self.suite.out).clone();
+        SuiteArgs { out, ..self.suite.clone() }
+    }
+}
+
 /// Options of a suite. A stage on its own takes what is not given from the suite it works on.
 #[derive(Debug, Clone, Default, Args)]
 pub struct SuiteArgs {

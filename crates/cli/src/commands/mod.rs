@@ -31,7 +31,7 @@ mod stage;
 mod sweep;
 mod test;
 
-use crate::options::SuiteArgs;
+use crate::options::{StageArgs, SuiteArgs};
 use crate::output::Output;
 use clap::{Parser, Subcommand};
 use recrash_pipeline::{PipelineError, Stage};
@@ -66,18 +66,22 @@ The same command goes on where it was stopped.";
 const NARRATE_EXAMPLES: &str = "\
 Examples:
   recrash narrate                                        the picks of suite/, by the rules
-  recrash narrate --out mini-suite --paraphrase gpt-5-mini";
+  recrash narrate mini-suite --paraphrase gpt-5-mini";
 const DESIGN_EXAMPLES: &str = "\
 Examples:
   recrash design                                         the narratives of suite/, by the rules
-  recrash design --out mini-suite --design gpt-5-mini --repairs 2";
+  recrash design mini-suite --design gpt-5-mini --repairs 2";
 const TUNE_EXAMPLES: &str = "\
 Examples:
   recrash tune                                           160 points for each scenario of suite/
-  recrash tune --out paper-suite --searcher halton --tune-budget 500
+  recrash tune paper-suite --searcher halton --tune-budget 500
   recrash tune --aim severity                            the worst contact instead of the nearest failure
 
 Exit code 5: a scenario is not true to its record as tuned; the results are written all the same.";
+const REPORT_EXAMPLES: &str = "\
+Examples:
+  recrash report                                         of the suite in suite/
+  recrash report paper-suite --json";
 const SCHEMA_EXAMPLES: &str = "\
 Examples:
   recrash schema > scenario.schema.json                  for an editor or a validator";
@@ -109,22 +113,23 @@ pub enum Command {
     Select(select::SelectArgs),
     /// Stage 3: paraphrase the narratives of the picks.
     #[command(after_help = NARRATE_EXAMPLES)]
-    Narrate(SuiteArgs),
+    Narrate(StageArgs),
     /// Stage 4: design a scenario for each narrative, checked by running it.
     #[command(after_help = DESIGN_EXAMPLES)]
-    Design(SuiteArgs),
+    Design(StageArgs),
     /// Stage 5: run the scenarios of a suite; or run one scenario file and show its metrics.
     Simulate(simulate::SimulateArgs),
     /// Stage 6: search each scenario's parameters for the nearest failure that is still true to the record.
     #[command(after_help = TUNE_EXAMPLES)]
-    Tune(SuiteArgs),
+    Tune(StageArgs),
     /// Stage 6 again for other egos: run the tuned scenarios, and where the system fails, run the other egos too.
     #[command(
         after_help = "Examples:\n  recrash triage                 the tuned scenarios of suite/\n  recrash triage --ego idm       another system under test in the same tuned scenarios"
     )]
-    Triage(SuiteArgs),
+    Triage(StageArgs),
     /// Stage 7: write report.html, junit.xml and results.csv.
-    Report(run::ReportArgs),
+    #[command(after_help = REPORT_EXAMPLES)]
+    Report(StageArgs),
     /// Write the scenarios of a suite, or one scenario file, in the formats of other tools.
     Export(export::ExportArgs),
     /// Read a scenario back: OpenSCENARIO that recrash wrote, or the paper's JSON dialect.
@@ -203,11 +208,11 @@ pub fn run(cli: &Cli) -> Result<(), PipelineError> {
         Command::Run(args) => run::run(args, output),
         Command::Records(args) => records::run(args, output),
         Command::Select(args) => select::run(args, output),
-        Command::Narrate(args) => stage::run(args, &[Stage::Narrate], output),
-        Command::Design(args) => stage::run(args, &[Stage::Design], output),
+        Command::Narrate(args) => stage::run(&args.suite(), &[Stage::Narrate], output),
+        Command::Design(args) => stage::run(&args.suite(), &[Stage::Design], output),
         Command::Simulate(args) => simulate::run(args, output),
-        Command::Tune(args) => stage::run(args, &[Stage::Tune, Stage::Triage], output),
-        Command::Triage(args) => stage::run(args, &[Stage::Triage], output),
+        Command::Tune(args) => stage::run(&args.suite(), &[Stage::Tune, Stage::Triage], output),
+        Command::Triage(args) => stage::run(&args.suite(), &[Stage::Triage], output),
         Command::Report(args) => run::report(args, output),
         Command::Export(args) => export::run(args, output),
         Command::Import(args) => import::run(args, output),

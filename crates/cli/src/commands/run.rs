@@ -4,32 +4,14 @@ use super::records::funnel;
 use super::retold;
 use super::select::{coverage, tables};
 use super::simulate::REGULATION_DRIVERS;
-use crate::options::SuiteArgs;
+use crate::options::{StageArgs, SuiteArgs};
 use crate::output::{self, Output, title};
 use crate::screen::{bold, eprintln, one_line, println, yellow};
 use crate::table::{Cell, number, table};
-use clap::Args;
 use recrash_model::metrics::{Answer, CheckKind};
 use recrash_model::narrative::Origin;
 use recrash_pipeline::{ModelSummary, PipelineError, RunSummary, Stage, Suite, Summary, check_choices, run_stage};
-use std::path::{Path, PathBuf};
-
-const REPORT_EXAMPLES: &str = "\
-Examples:
-  recrash report                                         of the suite in suite/
-  recrash report paper-suite --json";
-
-/// Options of `report`.
-#[derive(Debug, Clone, Args)]
-#[command(after_help = REPORT_EXAMPLES)]
-pub struct ReportArgs {
-    /// Folder of the suite, as with --out.
-    #[arg(value_name = "SUITE", conflicts_with = "out")]
-    pub folder: Option<PathBuf>,
-    /// Options of the suite.
-    #[command(flatten)]
-    pub suite: SuiteArgs,
-}
+use std::path::Path;
 
 /// Runs every stage.
 ///
@@ -56,9 +38,8 @@ pub fn run(args: &SuiteArgs, output: Output) -> Result<(), PipelineError> {
 ///
 /// # Errors
 /// A stage before it is not done.
-pub fn report(args: &ReportArgs, output: Output) -> Result<(), PipelineError> {
-    let out = args.folder.as_ref().unwrap_or(&args.suite.out).clone();
-    let suite = SuiteArgs { out, ..args.suite.clone() }.open_saved()?;
+pub fn report(args: &StageArgs, output: Output) -> Result<(), PipelineError> {
+    let suite = args.suite().open_saved()?;
     run_stage(&suite, Stage::Report, &*output.progress())?;
     finish(&suite, output)
 }

@@ -50,7 +50,7 @@ pub fn run(args: &SuiteArgs, stages: &[Stage], output: Output) -> Result<(), Pip
         let dir = suite.store().dir().display();
         println!("{name}: {done} units done, {skipped} there already, in {dir}");
         if let Some(next) = next(name) {
-            println!("next: recrash {next} --out {dir}");
+            println!("next: recrash {next} {dir}");
         }
     }
     match lost.len() {

@@ -107,7 +107,7 @@ fn stages_one_by_one_give_what_run_gives() {
     recrash(&["records", "--quiet", "--records", FEW, "--out", out]).assert().success();
     recrash(&["select", "--quiet", "--out", out]).args(SMALL).assert().success();
     for stage in ["narrate", "design", "simulate", "tune", "report"] {
-        recrash(&[stage, "--quiet", "--out", out]).assert().success();
+        recrash(&[stage, "--quiet", out]).assert().success();
     }
     assert_same_files(&whole, &parts);
 }

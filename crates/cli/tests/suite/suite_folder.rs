@@ -128,7 +128,7 @@ fn a_run_that_is_not_true_to_its_record_is_told_by_the_exit_code() {
     let (place, _) = small_suite(&[]);
     let (code, shown, error) = place.run(&["simulate", "suite"]);
     assert_eq!(code, 0, "a folder is a suite: {error}");
-    assert!(shown.contains("simulate: 0 units done, 2 there already, in suite"), "{shown}");
+    assert!(shown.contains("simulate: 0 units done, 2 there already, in suite\nnext: recrash tune suite\n"), "{shown}");
     std::fs::write(place.path("stand.py"), driving_ego(0.0)).unwrap();
     let standing = ["--ego", "cmd:python3 stand.py"];
     let (code, _, error) = place.run(&[&["simulate", "suite"], &standing[..]].concat());
