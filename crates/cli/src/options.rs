@@ -10,7 +10,7 @@ use recrash_pipeline::{
     EmbeddingKind, FILTER_HELP, Options, Patience, Permissions, PipelineError, RecordSource, Resources, SimulatorKind,
     Suite,
 };
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 /// Where crash records come from.
@@ -294,6 +294,21 @@ impl SuiteArgs {
             seed: self.seed.unwrap_or(base.seed),
             ..base
         }
+    }
+
+    /// Whether anything was typed that says nothing about one scenario file; a variable of the environment was not.
+    pub fn is_about_a_suite(&self) -> bool {
+        let none = Options::default();
+        let typed = self.options(none.clone());
+        let of_a_file = Options {
+            profile: typed.profile.clone(),
+            ego: typed.ego.clone(),
+            simulator: typed.simulator,
+            embedding: typed.embedding,
+            ..none
+        };
+        let Permissions { replace, discard_edits, reselect, .. } = self.permissions();
+        typed != of_a_file || replace || discard_edits || reselect || self.out != Path::new("suite")
     }
 
     /// What may be used of the machine.

@@ -57,6 +57,13 @@ pub fn run(args: &SimulateArgs, output: Output) -> Result<(), PipelineError> {
         let suite = SuiteArgs { out: scenario.clone(), ..args.suite.clone() };
         return stage::run(&suite, &[Stage::Simulate], output);
     }
+    if args.suite.is_about_a_suite() {
+        let file = scenario.display();
+        let what = format!(
+            "{file} is one scenario file: --profile, --ego, --ego-timeout, --sim, --python, --rollout and --picture are for it, and the other options for suites"
+        );
+        return Err(PipelineError::Usage(what));
+    }
     let defaults = crate::options::defaults();
     let profile = args.suite.profile.as_deref().unwrap_or(&defaults.profile);
     let result = simulate_file(&FileRequest {

@@ -144,6 +144,11 @@ fn a_run_that_is_not_true_to_its_record_is_told_by_the_exit_code() {
     let (code, _, error) = place.run(&["simulate", "suite", "--rollout", "x.json"]);
     assert_eq!(code, 2, "{error}");
     assert!(error.contains("suite is a folder"), "{error}");
+    for option in [&["--budget", "3"][..], &["--tune-budget", "9"], &["--out", "elsewhere"], &["--reselect"]] {
+        let (code, _, error) = place.run(&[&["simulate", "x.json"], option].concat());
+        assert_eq!(code, 2, "{option:?}: {error}");
+        assert!(error.contains("x.json is one scenario file"), "{error}");
+    }
 }
 
 #[test]
