@@ -1,4 +1,4 @@
-//! From a path such as `partners[0].start` back to the line of the JSON text it stands on.
+//! From a path such as `partners[0].start` to the line of the JSON text it stands on, and back.
 
 use recrash_model::Diagnostic;
 
@@ -34,6 +34,64 @@ pub fn locate(json: &str, path: &str) -> Option<(u64, u64)> {
         let column = at - before.iter().rposition(|byte| *byte == b'\n').map_or(0, |end| end + 1) + 1;
         (line as u64, column as u64)
     })
+}
+
+/// What is open at a place of a text.
+enum Open {
+    /// An object, and the key whose value was begun.
+    Object(Option<String>),
+    /// An array, and which element was begun.
+    Array(usize),
+}
+
+/// Path of the value that was being read where a reader stopped: the line and column (from 1) of the last byte it took, as
+/// `serde_json` tells them. "." is the whole document.
+pub fn path_at(json: &[u8], line: usize, column: usize) -> String {
+    let before =
+        json.split_inclusive(|byte| *byte == b'\n').take(line.saturating_sub(1)).map(<[u8]>::len).sum::<usize>();
+    let last = (before + column).saturating_sub(1).min(json.len());
+    let (mut open, mut at): (Vec<Open>, usize) = (Vec::new(), 0);
+    while at < last {
+        match json[at] {
+            b'"' => {
+                let end = skip_string(json, at);
+                if let Some(Open::Object(key @ None)) = open.last_mut() {
+                    if end > last {
+                        break;
+                    }
+                    *key = serde_json::from_slice(&json[at..end]).ok();
+                }
+                at = end;
+                continue;
+            }
+            b'{' => open.push(Open::Object(None)),
+            b'[' => open.push(Open::Array(0)),
+            b'}' | b']' => drop(open.pop()),
+            b',' => match open.last_mut() {
+                Some(Open::Object(key)) => *key = None,
+                Some(Open::Array(index)) => *index += 1,
+                None => {}
+            },
+            _ => {}
+        }
+        at += 1;
+    }
+    // Whoever stops at the end of an object or array has read all that is in it.
+    match (json.get(last), open.last_mut()) {
+        (Some(b'}'), Some(Open::Object(key))) => *key = None,
+        (Some(b']'), Some(Open::Array(_))) => drop(open.pop()),
+        _ => {}
+    }
+    let mut path = String::new();
+    for step in open {
+        match step {
+            Open::Object(Some(key)) if path.is_empty() => path = key,
+            Open::Object(Some(key)) => path += &format!(".{key}"),
+            Open::Object(None) => {}
+            Open::Array(index) => path += &format!("[{index}]"),
+        }
+    }
+    if path.is_empty() { ".".to_owned() } else { path }
 }
 
 enum Step<'a> {
@@ -139,7 +197,7 @@ fn element(bytes: &[u8], at: usize, index: usize) -> Option<usize> {
 
 #[cfg(test)]
 mod tests {
-    use super::locate;
+    use super::{locate, path_at};
 
     const TEXT: &str = "{\n  \"a\": [1, {\"b\": \"}\\\"\",\n    \"c\": 2}],\n  \"d\": null\n}";
 
@@ -149,6 +207,57 @@ mod tests {
         assert_eq!(locate(TEXT, "a[1].b"), Some((2, 18)));
         assert_eq!(locate(TEXT, "a[1].c"), Some((3, 10)));
         assert_eq!(locate(TEXT, "d"), Some((4, 8)));
+    }
+
+    #[test]
+    fn where_a_reader_stops_is_a_path() {
+        #[derive(Debug, serde::Deserialize)]
+        #[serde(rename_all = "snake_case")]
+        #[expect(dead_code, reason = "read for its errors")]
+        enum Kind {
+            Car { length_m: f64 },
+            Thing,
+        }
+        #[derive(Debug, serde::Deserialize)]
+        #[expect(dead_code, reason = "read for its errors")]
+        struct Part {
+            kind: Kind,
+            sizes: [f64; 2],
+            name: Option<String>,
+        }
+        #[derive(Debug, serde::Deserialize)]
+        #[expect(dead_code, reason = "read for its errors")]
+        struct Whole {
+            parts: Vec<Part>,
+            seed: u8,
+        }
+        let good = "{\n  \"parts\": [\n    {\"kind\": \"thing\", \"sizes\": [1.0, 2.0], \"name\": \"}\\\"]\"},\n    {\"kind\": {\"car\": {\"length_m\": 4}}, \"sizes\": [3, 4]}\n  ],\n  \"seed\": 7\n}";
+        assert!(serde_json::from_str::<Whole>(good).is_ok());
+        for (of, by) in [
+            ("\"thing\"", "\"lorry\""),
+            ("\"thing\"", "7"),
+            ("1.0,", "\"one\","),
+            ("[1.0, 2.0]", "[1.0]"),
+            ("\"sizes\": [3, 4]", "\"size\": [3, 4]"),
+            ("\"length_m\": 4", "\"length_m\": {}"),
+            ("\"length_m\": 4", "\"length\": 4"),
+            ("\"seed\": 7", "\"seed\": 700"),
+            (",\n  \"seed\": 7", ""),
+            ("\"seed\": 7", "\"seed\": null"),
+            ("\"name\": ", "\"name\": [], \"of\": "),
+        ] {
+            let bad = good.replacen(of, by, 1);
+            let error = serde_json::from_str::<Whole>(&bad).unwrap_err();
+            let followed: Result<Whole, _> =
+                serde_path_to_error::deserialize(&mut serde_json::Deserializer::from_str(&bad));
+            let followed = followed.unwrap_err().path().to_string();
+            assert_eq!(path_at(bad.as_bytes(), error.line(), error.column()), followed, "{error} in {bad}");
+        }
+        // One element too many is told where it is.
+        assert_eq!(path_at(b"{\"a\": [1.0, 2.0, 3.0]}", 1, 18), "a[2]");
+        assert_eq!(path_at(b"", 1, 0), ".");
+        assert_eq!(path_at(b"{\"a\": [1, ", 1, 11), "a[1]");
+        assert_eq!(path_at(b"]]", 9, 9), ".");
     }
 
     #[test]

@@ -34,7 +34,7 @@ pub use check::{arm_m, check, check_on};
 pub use conflict::{Conflict, Footprint};
 pub use course::{Beside, Course, CourseLeg, CoursePiece, Spot, StopLine};
 pub use drawing::{DrawnArea, GroundShape, LineKind, RoadDrawing, RoadLine};
-pub use json_place::{add_lines, locate};
+pub use json_place::{add_lines, locate, path_at};
 pub use lane::{Lane, LaneId, RoadId};
 pub use network::{NamedRoad, Road, RoadNetwork, RoadPart};
 pub use path::{LanePath, PathPoint};

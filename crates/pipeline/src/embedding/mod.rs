@@ -4,7 +4,8 @@ pub(crate) mod weights;
 
 use crate::embedding::weights::{find_weights, load};
 use crate::error::PipelineError;
-use crate::files::store::{sha256, to_compact_json};
+use crate::files::json::to_compact_json;
+use crate::files::store::sha256;
 use rayon::prelude::*;
 use recrash_embed::{Embedder, MINILM_NAME};
 use recrash_model::diagnostic::{Diagnostic, Location, Severity};

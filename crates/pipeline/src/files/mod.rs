@@ -2,6 +2,7 @@
 
 pub(crate) mod caches;
 pub(crate) mod folders;
+pub(crate) mod json;
 pub(crate) mod output;
 pub(crate) mod paths;
 pub(crate) mod store;

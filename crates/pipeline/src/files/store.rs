@@ -1,6 +1,7 @@
 //! Files: read with a bound on their size, written whole or not at all.
 
 use crate::error::PipelineError;
+use crate::files::json::{from_json, to_json};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use sha2::{Digest, Sha256};
@@ -192,12 +193,7 @@ impl Store {
         let path = self.inside(name)?;
         refuse_special(&path)?;
         let text = read_bytes(&path, MAX_SUITE_FILE)?;
-        // Following the path costs as much as the reading itself: only where there is an error to be placed.
-        serde_json::from_slice(&text).or_else(|_| {
-            let mut deserializer = serde_json::Deserializer::from_slice(&text);
-            serde_path_to_error::deserialize(&mut deserializer)
-                .map_err(|e| PipelineError::Damaged { problem: format!("{}: {}", e.path(), e.inner()), path })
-        })
+        from_json(&text).map_err(|misread| PipelineError::Damaged { problem: misread.to_string(), path })
     }
 
     /// A file's bytes; none where it cannot be read.
@@ -302,20 +298,6 @@ pub(crate) fn read_bytes(path: &Path, limit: u64) -> Result<Vec<u8>, PipelineErr
 pub(crate) fn read_text(path: &Path, limit: u64) -> Result<String, PipelineError> {
     String::from_utf8(read_bytes(path, limit)?)
         .map_err(|_| PipelineError::bad_input(format!("{} is not a text file (not UTF-8)", path.display())))
-}
-
-/// JSON of large values, on one line.
-pub(crate) fn to_compact_json<T: Serialize>(value: &T) -> Vec<u8> {
-    let mut text = serde_json::to_vec(value).expect("nouns serialise");
-    text.push(b'\n');
-    text
-}
-
-/// JSON as files hold it: indented, with a line break at the end.
-pub(crate) fn to_json<T: Serialize>(value: &T) -> Vec<u8> {
-    let mut text = serde_json::to_vec_pretty(value).expect("nouns serialise");
-    text.push(b'\n');
-    text
 }
 
 /// SHA-256 of a regular file's content, in hexadecimal; `None` where it cannot be read.

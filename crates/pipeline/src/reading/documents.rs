@@ -1,6 +1,7 @@
 //! JSON documents of ours that anybody may have written: bounded, with the place of what is wrong.
 
 use crate::error::PipelineError;
+use crate::files::json::{Misread, from_json};
 use crate::files::store::read_text;
 use serde::de::DeserializeOwned;
 use std::path::Path;
@@ -19,7 +20,7 @@ pub fn read_document<T: DeserializeOwned>(path: &Path, what: &str, format: &str)
     struct Tag {
         format: Option<String>,
     }
-    let tag: Tag = serde_json::from_str(&text).map_err(|error| bad(format!("it is no {what}: {error}")))?;
+    let tag: Tag = serde_json::from_slice(text.as_bytes()).map_err(|error| bad(format!("it is no {what}: {error}")))?;
     match tag.format {
         Some(tag) if tag == format => {}
         Some(tag) => {
@@ -30,9 +31,8 @@ pub fn read_document<T: DeserializeOwned>(path: &Path, what: &str, format: &str)
         }
         None => return Err(bad(format!("it is no {what}: it has no format; \"{format}\" is read"))),
     }
-    let mut deserializer = serde_json::Deserializer::from_str(&text);
-    serde_path_to_error::deserialize(&mut deserializer).map_err(|error| {
-        let inner: String = error.inner().to_string().chars().take(300).collect();
-        bad(format!("{}: {inner}", error.path()))
+    from_json(text.as_bytes()).map_err(|Misread { path, error }| {
+        let inner: String = error.to_string().chars().take(300).collect();
+        bad(format!("{path}: {inner}"))
     })
 }

@@ -1,7 +1,8 @@
 //! Accounts retold: a reconstruction each, and what becomes of every incident of crash files.
 
 use crate::error::PipelineError;
-use crate::files::store::{sha256, to_compact_json};
+use crate::files::json::to_compact_json;
+use crate::files::store::sha256;
 use crate::progress::{Progress, ProgressEvent};
 use crate::reading::accounts::told_facts;
 use crate::reading::records;

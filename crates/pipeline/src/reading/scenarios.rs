@@ -1,8 +1,9 @@
 //! Scenario files: read and checked; and one file run on its own.
 
 use crate::error::PipelineError;
+use crate::files::json::to_compact_json;
 use crate::files::output::Outputs;
-use crate::files::store::{read_text, to_compact_json};
+use crate::files::store::read_text;
 use crate::profiles::load_profile;
 use crate::reading::named;
 use crate::simulators::external::Patience;

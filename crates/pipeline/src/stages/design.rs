@@ -3,7 +3,7 @@
 use super::cases::text_of;
 use super::{Bench, CaseStage, player};
 use crate::error::PipelineError;
-use crate::files::store::to_json;
+use crate::files::json::to_json;
 use crate::models::cast::{RULES, unusable};
 use crate::simulators::Simulator;
 use crate::suite::names;

@@ -3,7 +3,7 @@
 use super::run_summary::RunSummary;
 use super::{case_stages, unit_name};
 use crate::error::PipelineError;
-use crate::files::store::to_json;
+use crate::files::json::to_json;
 use crate::suite::names;
 use crate::suite::{Files, Stage, Suite};
 use rayon::prelude::*;

@@ -3,7 +3,7 @@
 use super::cases::text_of;
 use super::{Bench, CaseStage, Cases, player};
 use crate::error::PipelineError;
-use crate::files::store::to_json;
+use crate::files::json::to_json;
 use crate::models::cast;
 use crate::suite::names;
 use crate::suite::{Files, Stage};

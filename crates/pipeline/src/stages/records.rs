@@ -3,7 +3,7 @@
 use super::second_reading::{SecondReading, read_again};
 use super::{StageReport, StageWork, cases, own, player};
 use crate::error::PipelineError;
-use crate::files::store::{to_compact_json, to_json};
+use crate::files::json::{to_compact_json, to_json};
 use crate::reading::records::RecordInput;
 use crate::reading::retelling::{Unread, tell};
 use crate::suite::Suite;

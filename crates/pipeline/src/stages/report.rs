@@ -6,7 +6,7 @@ use super::{
     Cases, StageReport, StageWork, case_inputs, case_stages, cases, edited_files, failures, records, unit_name, view,
 };
 use crate::error::PipelineError;
-use crate::files::store::{to_compact_json, to_json};
+use crate::files::json::{to_compact_json, to_json};
 use crate::reading::records::RecordInput;
 use crate::suite::names;
 use crate::suite::{Files, Stage, Suite, Work};

@@ -5,7 +5,7 @@ use super::cases::{case_seed, of_case, scenario, text_of};
 use super::tune::tune_options;
 use super::{Bench, CaseStage};
 use crate::error::PipelineError;
-use crate::files::store::{to_compact_json, to_json};
+use crate::files::json::{to_compact_json, to_json};
 use crate::models::cast::AgentLog;
 use crate::reading::retelling::{Staged, what_is_missed};
 use crate::simulators::{Simulator, built_in};

@@ -3,7 +3,8 @@
 use super::{StageReport, StageWork, cases, invent};
 use crate::embedding::{Embeds, KeptRows, for_strategy};
 use crate::error::PipelineError;
-use crate::files::store::{sha256, to_compact_json, to_json};
+use crate::files::json::{to_compact_json, to_json};
+use crate::files::store::sha256;
 use crate::suite::names;
 use crate::suite::{Stage, Suite, Work};
 use rayon::prelude::*;

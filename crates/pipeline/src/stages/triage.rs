@@ -3,7 +3,7 @@
 use super::cases::scenario;
 use super::{Bench, CaseStage};
 use crate::error::PipelineError;
-use crate::files::store::{to_compact_json, to_json};
+use crate::files::json::{to_compact_json, to_json};
 use crate::simulators::built_in;
 use crate::suite::names;
 use crate::suite::{Files, Stage};

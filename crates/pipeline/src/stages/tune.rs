@@ -3,7 +3,7 @@
 use super::cases::{case_seed, scenario, text_of};
 use super::{Bench, CaseStage, player};
 use crate::error::PipelineError;
-use crate::files::store::{to_compact_json, to_json};
+use crate::files::json::{to_compact_json, to_json};
 use crate::models::cast::{self, AgentLog, RULES};
 use crate::suite::names;
 use crate::suite::{Files, Stage, Suite};

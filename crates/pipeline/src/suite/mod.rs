@@ -10,7 +10,8 @@ use crate::error::PipelineError;
 use crate::models::cast::RULES;
 use crate::simulators::external::{EgoCommand, Patience};
 
-use crate::files::store::{Store, WriteFile, sha256, to_json, write_suite_file};
+use crate::files::json::to_json;
+use crate::files::store::{Store, WriteFile, sha256, write_suite_file};
 use crate::models::{AnswerMode, ModelAccess, Models};
 use crate::options::{Options, RecordSource};
 use crate::reading::records;

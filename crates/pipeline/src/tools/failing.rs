@@ -3,8 +3,9 @@
 
 use crate::error::PipelineError;
 use crate::files::folders::must_be_free;
+use crate::files::json::to_json;
 use crate::files::output::Outputs;
-use crate::files::store::{Store, to_json, write_suite_file};
+use crate::files::store::{Store, write_suite_file};
 use crate::progress::{Progress, ProgressEvent};
 use crate::simulators::{SimulatorKind, start_simulator};
 use crate::tools::freezing::Opened;

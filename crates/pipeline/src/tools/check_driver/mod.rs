@@ -10,8 +10,9 @@ pub use limits::{LimitCheck, Survived};
 
 use crate::error::PipelineError;
 use crate::files::folders::must_be_free;
+use crate::files::json::to_json;
 use crate::files::output::Outputs;
-use crate::files::store::{io, to_json};
+use crate::files::store::io;
 use crate::progress::{Progress, ProgressEvent};
 use crate::simulators::external::Patience;
 use crate::simulators::{Simulator, SimulatorKind, start_simulator};

@@ -5,8 +5,8 @@ mod page;
 pub use page::{PageRequest, write_page};
 
 use crate::error::PipelineError;
+use crate::files::json::to_json;
 use crate::files::output::{Output, Outputs};
-use crate::files::store::to_json;
 use crate::tools::testing::read_results;
 use recrash_lab::comparison::compare;
 use recrash_model::comparison::{Change, Comparison};

@@ -9,8 +9,9 @@ mod structure;
 
 use crate::error::PipelineError;
 use crate::files::folders::must_be_free;
+use crate::files::json::{to_compact_json, to_json};
 use crate::files::paths;
-use crate::files::store::{Store, io, read_bytes, sha256, to_compact_json, to_json, write_suite_file};
+use crate::files::store::{Store, io, read_bytes, sha256, write_suite_file};
 use crate::profiles::DEFAULT_PROFILE;
 use crate::progress::{Progress, ProgressEvent};
 use crate::suite::SUITE_FILE;

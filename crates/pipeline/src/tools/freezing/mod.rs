@@ -7,8 +7,9 @@ pub(crate) use open::Opened;
 
 use crate::error::PipelineError;
 use crate::files::folders::must_be_free;
+use crate::files::json::to_json;
 use crate::files::paths;
-use crate::files::store::{Store, sha256, to_json, write_suite_file};
+use crate::files::store::{Store, sha256, write_suite_file};
 use crate::profiles::load_profile;
 use recrash_model::account::Account;
 use recrash_model::frozen::{About, FROZEN_FORMAT, FrozenFile, FrozenSuite, FrozenTest, Provenance, scenario_content};

@@ -2,6 +2,7 @@
 
 use super::{FreezeRequest, Test};
 use crate::error::PipelineError;
+use crate::files::json::from_json;
 use crate::files::store::{io, read_text};
 use crate::reading::scenarios::read_scenario;
 use crate::suite::Suite;
@@ -160,9 +161,8 @@ struct AllTold {
 /// Adds incidents and crash types to the tests that are of their reports.
 fn tell(tests: &mut [Test], file: &Path) -> Result<(), PipelineError> {
     let text = read_text(file, MAX_ABOUT)?;
-    let mut deserializer = serde_json::Deserializer::from_str(&text);
-    let read: AllTold = serde_path_to_error::deserialize(&mut deserializer).map_err(|error| {
-        let why = format!("{}: {}: {}", file.display(), error.path(), error.inner());
+    let read: AllTold = from_json(text.as_bytes()).map_err(|misread| {
+        let why = format!("{}: {misread}", file.display());
         PipelineError::bad_input(format!("{why}; what `recrash reconstruct --json` prints is read"))
     })?;
     let by_report: BTreeMap<String, &Told> =

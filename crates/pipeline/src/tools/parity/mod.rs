@@ -10,7 +10,8 @@ pub use recrash_lab::parity::{
 pub use tables::ParityTable;
 
 use crate::error::PipelineError;
-use crate::files::store::{Store, to_json, write_file_whole};
+use crate::files::json::to_json;
+use crate::files::store::{Store, write_file_whole};
 use crate::profiles::load_profile;
 use crate::progress::{Progress, ProgressEvent};
 use crate::reading::scenarios::read_scenario;

@@ -1,8 +1,8 @@
 //! Runs of a frozen suite: what an ego does in each of its tests. Described in `docs/nightly.md`.
 
 use crate::error::PipelineError;
+use crate::files::json::to_json;
 use crate::files::output::Outputs;
-use crate::files::store::to_json;
 use crate::progress::{Progress, ProgressEvent};
 use crate::reading::documents::read_document;
 use crate::reading::named;
