@@ -30,6 +30,12 @@ def night(recrash: str, suite: Path, tmp_path_factory: pytest.TempPathFactory) -
     compared = ["--baseline", "base.json", "--junit", "junit.xml", "--out", "new.json", "--quiet"]
     assert run(folder, recrash, "test", "cases", "--ego", "metadrive-idm", *compared) == 0
     assert run(folder, recrash, "evidence", str(suite), "--tuned", "--out", "evidence", "--quiet") == 0
+    # A program drives from the handover on, and nothing is measured before it.
+    program = f"cmd:{sys.executable} {ROOT / 'docs' / 'examples' / 'ego.py'}"
+    told = ["run", "--budget", "12", "--tune-budget", "1", "--ego", program, "--out", "by-program", "--quiet"]
+    assert run(folder, recrash, *told) == 0
+    assert run(folder, recrash, "freeze", "by-program", "--out", "program-frozen", "--quiet") == 0
+    assert run(folder, recrash, "evidence", "program-frozen", "--ego", program, "--out", "by-program-evidence", "--quiet") == 0
     # Real accounts have crash types, each a group of its own.
     assert run(folder, recrash, "run", "--budget", "30", "--tune-budget", "1", "--out", "told", "--quiet") == 0
     assert run(folder, recrash, "freeze", "told", "--out", "typed", "--quiet") == 0
@@ -82,6 +88,8 @@ def check(folder: Path) -> subprocess.CompletedProcess:
 
 
 def test_every_number_of_the_evidence_comes_out_again(night: Path) -> None:
+    by_program = check(night / "by-program-evidence")
+    assert by_program.returncode == 0, by_program.stdout + by_program.stderr
     checked = check(night / "evidence")
     assert checked.returncode == 0, checked.stdout + checked.stderr
     numbers = json.loads((night / "evidence" / "numbers.json").read_text())["numbers"]

@@ -167,7 +167,7 @@ fn odd_behaviour(metrics: &Metrics, criteria: &FailureCriteria) -> Vec<Finding> 
             phantom,
             criteria.phantom_braking_mps2,
             format!(
-                "The ego braked with {:.1} m/s\u{b2} at {:.1} s with nothing in its way; the profile allows {:.1} m/s\u{b2}.",
+                "The ego braked with {:.1} m/s\u{b2} at {:.1} s with nothing close ahead that asks for it; the profile allows {:.1} m/s\u{b2}.",
                 phantom.value, phantom.time_s, criteria.phantom_braking_mps2
             ),
         );

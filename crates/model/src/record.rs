@@ -2,7 +2,7 @@
 
 pub use crate::origin::RecordRef;
 
-use crate::account::{CrashType, Role, Untold};
+use crate::account::{CrashType, Driver, Role, Untold};
 use crate::kinds::PartnerKind;
 use crate::surroundings::{Lighting, Surface, Weather};
 use crate::template::{Movement, RoadType, Template};
@@ -224,6 +224,9 @@ pub struct Reading {
     pub crash_type: CrashType,
     /// Whose move brought the conflict about.
     pub role: Option<Role>,
+    /// Who drove the subject vehicle at the contact.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub driver: Option<Driver>,
     /// Road and movements as they are told; where no movement is, as the state at the contact has it.
     pub template: Template,
 }

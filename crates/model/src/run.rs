@@ -3,7 +3,7 @@
 
 use crate::cause::Cause;
 use crate::hash::Fnv;
-use crate::metrics::{Answer, Finding, FindingKind, Metrics, Verdict};
+use crate::metrics::{Answer, CheckKind, CheckResult, Finding, FindingKind, Metrics, Verdict};
 use crate::preventability::Preventability;
 use crate::rollout::{EventKind, Rollout};
 use crate::severity::Severity;
@@ -118,6 +118,12 @@ impl std::ops::Deref for JudgedRun {
 }
 
 impl Judgement {
+    /// Whether the system under test came into the situation of its record; nothing where that was not looked at.
+    pub fn situation_met(&self) -> Option<bool> {
+        let check = self.verdict.checks.iter().find(|check| check.kind == CheckKind::Situation)?;
+        Some(check.result == CheckResult::Shown)
+    }
+
     /// The findings that are failures, by kind.
     pub fn failures(&self) -> impl Iterator<Item = FindingKind> {
         self.findings.iter().map(|finding| finding.kind).filter(|kind| kind.is_failure())

@@ -76,10 +76,12 @@ function setUpTable() {
     select.closest('label').hidden = names.length < 2;
     select.addEventListener('change', list);
   }
+  // Of these the most is looked for first.
+  const mostFirst = new Set(['severity', 'harm', 'impact', 'findings']);
   all('.sort', table).forEach((button) => button.addEventListener('click', () => {
     const again = sort.value === button.dataset.sort;
     sort.value = button.dataset.sort;
-    direction.setAttribute('aria-pressed', again && direction.getAttribute('aria-pressed') !== 'true');
+    direction.setAttribute('aria-pressed', again ? direction.getAttribute('aria-pressed') !== 'true' : mostFirst.has(sort.value));
     list();
   }));
   direction.addEventListener('click', () => {
@@ -87,7 +89,11 @@ function setUpTable() {
     list();
   });
   search.addEventListener('input', list);
-  for (const select of [tag, sort]) select.addEventListener('change', list);
+  tag.addEventListener('change', list);
+  sort.addEventListener('change', () => {
+    direction.setAttribute('aria-pressed', mostFirst.has(sort.value));
+    list();
+  });
   one('#case-reset').addEventListener('click', () => {
     search.value = '';
     tag.value = 'all';

@@ -25,6 +25,12 @@ enum Standing<'a> {
     Error(&'a str),
 }
 
+/// Whether no run of a test came into the situation of its record.
+fn never_met(test: &TestResult) -> bool {
+    let mut outcomes = test.runs.iter().filter_map(|run| run.outcome.as_ref()).peekable();
+    outcomes.peek().is_some() && outcomes.all(|outcome| outcome.met == Some(false))
+}
+
 /// How a test stands: against a baseline where there is one, by itself else.
 fn standing<'a>(test: &'a TestResult, compared: Option<&'a Compared>) -> Standing<'a> {
     let why = || test.telling().and_then(|run| run.why.as_deref()).unwrap_or("no reason is told");
@@ -32,6 +38,9 @@ fn standing<'a>(test: &'a TestResult, compared: Option<&'a Compared>) -> Standin
         (TestVerdict::NotRun, _) => Standing::Error(why()),
         (_, Some(Change::Broken)) => Standing::Red("broken"),
         (_, Some(Change::Worse)) => Standing::Red("worse"),
+        (TestVerdict::Passed, _) if never_met(test) => {
+            Standing::Known("never in the situation of its record: no failure, and no pass".to_owned())
+        }
         (TestVerdict::Passed, _) => Standing::Passed,
         (TestVerdict::Failed, Some(Change::Flaky)) => Standing::Known("flaky: it fails now and then".to_owned()),
         (TestVerdict::Failed, Some(Change::Same | Change::Better)) => {

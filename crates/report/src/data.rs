@@ -10,7 +10,7 @@ use crate::pairs::{PairView, RunTrace};
 use crate::search::{self, ToldRecords};
 use crate::staging;
 use crate::summary::Result as Outcome;
-use crate::view::{CaseRow, CaseView, RunRow, RunView, SuiteView};
+use crate::view::{AccountRow, CaseRow, CaseView, RunRow, RunView, SuiteView};
 use crate::words;
 use recrash_model::geometry::{OrientedBox, Vec2};
 use recrash_model::kinds::PartnerKind;
@@ -138,7 +138,7 @@ fn tags(case: &CaseRow) -> String {
         ("driving", outcome == Outcome::Failed),
         ("struck", outcome == Outcome::Struck),
         ("tuning", case.found_by_tuning()),
-        ("passed", failed == Some(false)),
+        ("passed", outcome == Outcome::Passed),
         ("faithful", case.faithful() == Some(Answer::Yes)),
         ("unfaithful", case.faithful() == Some(Answer::No)),
         ("unchecked", case.faithful() == Some(Answer::Unchecked)),
@@ -150,6 +150,7 @@ fn tags(case: &CaseRow) -> String {
         ("met", case.situation_met() == Some(true)),
         ("unmet", case.situation_met() == Some(false)),
         ("edited", !case.edited.is_empty()),
+        ("human", case.account.as_ref().is_some_and(AccountRow::human_drove)),
     ];
     holds.iter().filter(|(_, holds)| *holds).map(|(tag, _)| *tag).collect::<Vec<_>>().join(" ")
 }

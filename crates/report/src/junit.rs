@@ -1,7 +1,7 @@
 //! JUnit XML, in the form that Jenkins, GitLab and GitHub actions read.
 
 use crate::results::other_egos;
-use crate::summary::{Summary, struck_standing};
+use crate::summary::{Result as Outcome, Summary, struck_standing};
 use crate::view::{CaseRow, RunNames, RunRow, SuiteView};
 use crate::words::{self, fixed};
 use quick_xml::Writer;
@@ -22,7 +22,7 @@ pub fn render(suite: &SuiteView) -> String {
             ("name", &suite.title),
             ("tests", &total(|group| group.cases.len())),
             ("failures", &total(|group| group.failed())),
-            ("errors", "0"),
+            ("errors", &total(|group| group.errors())),
             ("skipped", &total(|group| group.skipped())),
         ]));
         suites.write_inner_content(|writer| {
@@ -36,9 +36,14 @@ pub fn render(suite: &SuiteView) -> String {
     text
 }
 
+/// Why the system under test was not driven in a scenario that there is.
+fn not_driven(case: &CaseRow) -> Option<&str> {
+    case.refused.as_deref().filter(|_| case.undriven)
+}
+
 /// Whether a run is no failure, and no pass either.
 fn says_nothing(run: &RunRow) -> bool {
-    !run.failed() && run.situation_met() == Some(false)
+    Outcome::of(Some(run)) == Outcome::NotMet
 }
 
 /// The cases of one kind of run.
@@ -66,7 +71,15 @@ impl Group<'_> {
     }
 
     fn skipped(&self) -> usize {
-        self.cases.iter().filter(|case| (self.run)(case).is_none_or(says_nothing)).count()
+        let skipped = |case: &&&CaseRow| match (self.run)(case) {
+            Some(run) => says_nothing(run),
+            None => not_driven(case).is_none(),
+        };
+        self.cases.iter().filter(skipped).count()
+    }
+
+    fn errors(&self) -> usize {
+        self.cases.iter().filter(|case| (self.run)(case).is_none() && not_driven(case).is_some()).count()
     }
 
     /// What the whole run has in common stands in the first group alone: readers that put all groups into one refuse a
@@ -76,7 +89,7 @@ impl Group<'_> {
             ("name", self.name),
             ("tests", &self.cases.len().to_string()),
             ("failures", &self.failed().to_string()),
-            ("errors", "0"),
+            ("errors", &self.errors().to_string()),
             ("skipped", &self.skipped().to_string()),
         ]));
         element.write_inner_content(|writer| {
@@ -146,6 +159,13 @@ fn test_case(
     ]));
     element.write_inner_content(|writer| {
         let Some(run) = run else {
+            if let Some(why) = not_driven(case) {
+                let error = writer
+                    .create_element("error")
+                    .with_attributes(attributes(&[("type", "not run"), ("message", why)]));
+                error.write_empty()?;
+                return Ok(());
+            }
             let why = case.refused.as_deref().unwrap_or(words::not_run(case));
             writer.create_element("skipped").with_attributes(attributes(&[("message", why)])).write_empty()?;
             return Ok(());

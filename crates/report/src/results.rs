@@ -132,7 +132,7 @@ fn row(suite: &SuiteView, case: &CaseRow, name: &str, run: Option<&RunRow>) -> V
     row.push(account.and_then(|account| account.role).map_or_else(String::new, |role| words::name(&role)));
     row.push(
         run.filter(|_| account.is_some())
-            .and_then(RunRow::situation_met)
+            .and_then(|run| run.situation_met())
             .map_or_else(String::new, |met| met.to_string()),
     );
     let severity = run.and_then(|run| run.severity.as_ref());

@@ -11,10 +11,12 @@ use recrash_model::triage::FailureClass;
 pub enum Result {
     /// It failed, and was not struck while it stood.
     Failed,
-    /// It failed, and stood in its own way when it was struck: nothing to do with what it drove.
+    /// It failed, and stood in its own way when it was struck: seldom by what it drove.
     Struck,
     /// It did not.
     Passed,
+    /// It did not, and never came into the situation of its record: no pass.
+    NotMet,
     /// There is no run.
     Missing,
 }
@@ -25,6 +27,7 @@ impl Result {
         match run {
             Some(run) if struck_standing(run) => Self::Struck,
             Some(run) if run.failed() => Self::Failed,
+            Some(run) if run.situation_met() == Some(false) => Self::NotMet,
             Some(_) => Self::Passed,
             None => Self::Missing,
         }
@@ -36,12 +39,13 @@ impl Result {
             Self::Failed => "fails",
             Self::Struck => "struck standing",
             Self::Passed => "passes",
+            Self::NotMet => "not met",
             Self::Missing => "not run",
         }
     }
 }
 
-/// Whether the ego failed by being struck while it stood, which has nothing to do with what it drove.
+/// Whether the ego failed by being struck while it stood, seldom by what it drove.
 pub fn struck_standing(run: &Judgement) -> bool {
     run.failed() && run.cause == Some(Cause::StruckStanding)
 }
@@ -117,6 +121,8 @@ impl Summary {
         let fails = |case: &CaseRow| case.last_run().is_some_and(|run| run.failed());
         let tells = |case: &CaseRow, name: &str| case.origin.as_ref().is_some_and(|origin| origin.name() == name);
         let answers = |case: &CaseRow, answer| case.faithful() == Some(answer);
+        // By accounts failures are counted where the situation of the record was met.
+        let counts = |case: &CaseRow| case.account.is_none() || case.situation_met() == Some(true);
         let gaps = |of: &dyn Fn(&CaseRow) -> Option<f64>| median(suite.cases.iter().filter_map(of).collect());
         Self {
             rows: suite.records.files.iter().map(|file| file.rows).sum(),
@@ -137,7 +143,12 @@ impl Summary {
             failed_after: count(&fails),
             classes: FailureClass::ALL
                 .into_iter()
-                .map(|class| (class, count(&|case| case.triage.as_ref().is_some_and(|triage| triage.class == class))))
+                .map(|class| {
+                    (
+                        class,
+                        count(&|case| counts(case) && case.triage.as_ref().is_some_and(|triage| triage.class == class)),
+                    )
+                })
                 .filter(|(_, count)| *count > 0)
                 .collect(),
             closer: count(&|case| closer(case) == Some(true)),

@@ -9,9 +9,9 @@
 use crate::pairs::RunTrace;
 use crate::thumbnail::Thumbnail;
 use recrash_model::Diagnostic;
-use recrash_model::account::{AccountSet, CrashType, Role};
+use recrash_model::account::{AccountSet, CrashType, Driver, Role};
 use recrash_model::coverage::CorpusCoverage;
-use recrash_model::metrics::{Answer, CheckKind, CheckResult, Series};
+use recrash_model::metrics::{Answer, Series};
 use recrash_model::narrative::{Narrative, Origin};
 use recrash_model::profile::SystemProfile;
 use recrash_model::record::{CrashRecord, RecordRef, RecordSet};
@@ -72,6 +72,15 @@ pub struct AccountRow {
     pub crash_type: CrashType,
     /// Whose move brought the conflict about.
     pub role: Option<Role>,
+    /// Who drove the record's vehicle at the contact.
+    pub driver: Option<Driver>,
+}
+
+impl AccountRow {
+    /// Whether a human drove the record's vehicle at the contact.
+    pub fn human_drove(&self) -> bool {
+        matches!(self.driver, Some(Driver::Human | Driver::HumanTookOver))
+    }
 }
 
 /// What the runs of a case are called.
@@ -134,6 +143,8 @@ pub struct CaseRow {
     pub after: Option<RunRow>,
     /// How the other egos fare in the last run's scenario, where the ego under test fails it.
     pub triage: Option<Triage>,
+    /// Whether there is a scenario, and driving it failed.
+    pub undriven: bool,
     /// Why the scenario was refused, where it was.
     pub refused: Option<String>,
     /// Files of this scenario that a person edited.
@@ -293,15 +304,6 @@ impl CaseRow {
     /// Whether the system under test came into the situation of its record; nothing where that was not looked at.
     pub fn situation_met(&self) -> Option<bool> {
         self.account.as_ref().and(self.after.as_ref())?.situation_met()
-    }
-}
-
-impl RunRow {
-    /// Whether the system under test came into the situation of its record; nothing where that was not looked at.
-    pub fn situation_met(&self) -> Option<bool> {
-        let mut checks = self.verdict.checks.iter();
-        let check = checks.find(|check| check.kind == CheckKind::Situation)?;
-        Some(check.result == CheckResult::Shown)
     }
 }
 

@@ -58,7 +58,8 @@ pub struct UnknownEgo(pub String);
 
 impl fmt::Display for UnknownEgo {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "no ego is called `{}`; there are: {}", self.0, Ego::NAMES.join(", "))
+        let names = Ego::NAMES.join(", ");
+        write!(f, "no ego is called `{}`; there are: {names}; a program is cmd:PROGRAM, Python py:MODULE:NAME", self.0)
     }
 }
 

@@ -32,6 +32,9 @@ fn kind_words(kind: Option<Kind>) -> String {
         Ok(serde_json::Value::String(name)) => name.replace('_', " ").replace("suv", "SUV"),
         _ => "vehicle".to_owned(),
     };
+    if name == "debris" {
+        return name;
+    }
     let article = if name == "SUV" || name.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" };
     format!("{article} {name}")
 }
@@ -87,7 +90,10 @@ fn zone_words(zones: &[Told<ContactZone>]) -> String {
 fn ego_sentence(account: &Account, template: Template) -> String {
     let road = template.road.label();
     let heading = told(&account.sv.heading).map(compass);
-    let reasons: Vec<&str> = account.sv.reasons.iter().map(|reason| reason_words(reason.value)).collect();
+    // Who was parked is not told to have been so a second time.
+    let parked = told(&account.sv.state) == Some(ContactState::Parked);
+    let reasons = account.sv.reasons.iter().map(|reason| reason.value);
+    let reasons: Vec<&str> = reasons.filter(|&why| !(parked && why == StandReason::Parked)).map(reason_words).collect();
     let why = if reasons.is_empty() { String::new() } else { format!(" {}", list(&reasons)) };
     match (told(&account.sv.state), heading) {
         (Some(state), Some(to)) => format!("{road}: the ego {}{why}, heading {to}.", state_words(state)),

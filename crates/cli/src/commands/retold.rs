@@ -161,7 +161,7 @@ fn worst(cases: &[CaseSummary]) {
     println!("{rows}");
     let shown = |verdict| worst.iter().any(|case| Verdict::of(case) == verdict);
     if shown(Verdict::Struck) {
-        sentence("  STRUCK: it failed, and stood when it was struck: nothing to do with what it drove");
+        sentence("  STRUCK: it failed, and had stood for a second when it was struck: seldom by what it drove");
     }
     if shown(Verdict::NotMet) {
         sentence("  NOT MET: it never came into the situation of the record: no failure, and no pass");

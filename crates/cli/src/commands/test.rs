@@ -326,7 +326,7 @@ fn show_failures(results: &TestResults) {
         println!("and {} more, told by --json and --out", failed.len() - SHOWN);
     }
     let failures = Failures::of(failed.iter().map(|(_, outcome)| outcome.cause));
-    println!("{} failed: {failures} (STRUCK: it stood, which has nothing to do with what it drove)", failures.total());
+    println!("{} failed: {failures} (STRUCK: it had stood for a second, seldom by what it drove)", failures.total());
 }
 
 /// Whether it failed by being struck while it stood.

@@ -59,7 +59,7 @@ type Rule = fn(&Encounter) -> bool;
 const RULES: [(Cause, Rule); 12] = [
     (Cause::StoodInTheWay, |e| e.stood(e.ego) && !e.goes_same_way() && e.blocks()),
     (Cause::StruckStanding, |e| e.stood(e.ego)),
-    (Cause::BrakedForNothing, |e| e.is_behind() && e.braked_for_nothing()),
+    (Cause::BrakedForNothing, |e| e.is_behind() && !e.stood(e.other) && e.braked_for_nothing()),
     (Cause::TurnedAcross, |e| {
         e.turned(e.ego) && !e.turned(e.other) && !e.stood(e.other) && !e.is_behind() && !e.goes_same_way_before()
     }),

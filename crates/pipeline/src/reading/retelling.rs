@@ -231,6 +231,7 @@ pub(crate) fn tell(
                 reports: account.reports.len(),
                 crash_type,
                 role: told(&account.role),
+                driver: told(&account.driver),
                 template: account.template(),
             }),
             (why, _) => Err(RejectReason::Untold(why.unwrap_or(Untold::NoAccount))),

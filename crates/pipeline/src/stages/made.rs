@@ -81,6 +81,7 @@ impl<'a> Case<'a> {
             reports: reading.reports,
             crash_type: reading.crash_type,
             role: reading.role,
+            driver: reading.driver,
         });
         let edited = edited_files(suite, id);
         let design = made(Stage::Design).then(|| store.read_json(&names::design_log(id))).transpose()?;

@@ -66,7 +66,7 @@ impl RunSummary {
         }
     }
 
-    /// Whether it failed by being struck while it stood, which has nothing to do with what it drove.
+    /// Whether it failed by being struck while it stood, seldom by what it drove.
     pub fn struck_standing(&self) -> bool {
         self.failed && self.cause == Some(Cause::StruckStanding)
     }

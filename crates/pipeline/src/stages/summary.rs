@@ -11,11 +11,10 @@ use recrash_lab::coverage::{Incident, Tested, coverage};
 use recrash_model::account::{AccountSet, CrashType, FactShare, TypeShare, Untold};
 use recrash_model::cause::{Cause, Failures};
 use recrash_model::coverage::CorpusCoverage;
-use recrash_model::metrics::{Answer, CheckKind, CheckResult};
+use recrash_model::metrics::Answer;
 use recrash_model::narrative::Origin;
 use recrash_model::preventability::Bracket;
 use recrash_model::record::{FunnelStep, RecordRef};
-use recrash_model::run::JudgedRun;
 use recrash_model::selection::{Coverage, EmbeddingInfo, StageTables, Strategy, TemplateCount};
 use recrash_model::template::Template;
 use recrash_model::triage::{FailureClass, Triage};
@@ -323,7 +322,7 @@ impl CaseSummary {
             edited: case.edited.clone(),
             crash_type: case.account.as_ref().map(|account| account.crash_type),
             recorded: case.recorded.as_ref().map(|ran| RunSummary::new(&ran.run)),
-            situation_met: case.tuned.as_ref().and_then(|tuned| situation_met(&tuned.ran.run)),
+            situation_met: case.tuned.as_ref().and_then(|tuned| tuned.ran.run.situation_met()),
             first: case.first.as_ref().map(|ran| RunSummary::new(&ran.run)),
             tuned: case.tuned.as_ref().map(|tuned| RunSummary::new(&tuned.ran.run)),
             triage: case.triage.clone(),
@@ -331,11 +330,6 @@ impl CaseSummary {
             points: case.tuned.as_ref().map_or(0, |tuned| tuned.log.points.len()),
         }
     }
-}
-
-fn situation_met(run: &JudgedRun) -> Option<bool> {
-    let check = run.verdict.checks.iter().find(|check| check.kind == CheckKind::Situation)?;
-    Some(check.result == CheckResult::Shown)
 }
 
 /// Puts a run in numbers.

@@ -6,8 +6,7 @@ use super::summary::Summary;
 use crate::files::paths::quoted;
 use crate::options::{Options, RecordSource};
 use crate::reading::named;
-use crate::suite::Suite;
-use crate::suite::names;
+use crate::suite::{Stage, Suite, names};
 use recrash_metrics::series;
 use recrash_model::diagnostic::{Diagnostic, Location, Severity};
 use recrash_report::{CaseRow, CaseView, RunRow, RunTrace, RunView, SuiteView, Thumbnail};
@@ -63,6 +62,9 @@ fn model_remarks(summary: &Summary) -> Vec<Diagnostic> {
     remarks
 }
 
+/// The stages in which a scenario is driven.
+const DRIVEN_IN: [Stage; 3] = [Stage::Simulate, Stage::Tune, Stage::Triage];
+
 /// The light part of a case.
 pub(super) fn row(suite: &Suite, cases: &Cases, position: usize, case: &Case) -> CaseRow {
     let id = &case.cluster.scenario_id;
@@ -82,6 +84,7 @@ pub(super) fn row(suite: &Suite, cases: &Cases, position: usize, case: &Case) ->
         untuned: untuned.map(|(ran, file)| run_row(suite, ran, &file(id))),
         after: after.map(|(ran, file)| run_row(suite, ran, &file(id))),
         triage: case.triage.clone(),
+        undriven: case.failure.as_ref().is_some_and(|at| DRIVEN_IN.iter().any(|stage| stage.name() == at.stage)),
         refused: case.failure.as_ref().map(ToString::to_string),
         edited: case.edited.clone(),
         thumbnail: last.and_then(|ran| Thumbnail::of(&ran.run)),

@@ -145,7 +145,7 @@ const OF_ACCOUNTS: [(&str, &str); 11] = [
     ),
     (
         "Struck standing, struck moving, otherwise",
-        "Failures are counted by how they came about. The ego had stood in its own way for a second and somebody drove into it: that has nothing to do with what it drove. It moved, slowed or had just stopped, and was struck from where it does not look, mostly from behind: that hardly has. All others are by what it did or did not do.",
+        "Failures are counted by how they came about. The ego had stood in its own way for a second and somebody drove into it: that has seldom to do with what it drove; whether another ego avoids it stands beside it. It moved, slowed or had just stopped, and was struck from where it does not look, mostly from behind: that hardly has. All others are by what it did or did not do.",
     ),
     (
         "Quirk, avoidable, beyond reference, unavoidable, unclear",

@@ -3,7 +3,7 @@
 
 use super::{Case, compare, icon, parts, scenario, severity, story, triage};
 use crate::summary::Result;
-use crate::view::{CaseContext, CaseRow, CaseView, RunView};
+use crate::view::{AccountRow, CaseContext, CaseRow, CaseView, RunView};
 use crate::{anchor, data, words};
 use maud::{Markup, html};
 use serde_json::json;
@@ -75,6 +75,9 @@ fn head(case: Case, anchor: &str) -> Markup {
             .chips {
                 (parts::result_chip(Result::of(last.map(|run| &run.run.judgement))))
                 @if let Some(triage) = &view.triage { (parts::class_chip(triage.class)) }
+                @if row.account.as_ref().is_some_and(AccountRow::human_drove) {
+                    span.chip.odd title="the record's vehicle; in the test the system under test drives from the handover on" { "human at the contact" }
+                }
                 (parts::faithful_chip(row.telling_run().map(|run| &run.judgement), row.origin.as_ref()))
                 @match row.situation_met() { Some(true) => span.chip.none { "situation met" }, Some(false) => span.chip.odd { "situation not met" }, None => "" }
                 @if row.account.is_some() && row.found_by_tuning() { (parts::tuning_chip()) }
@@ -213,6 +216,7 @@ fn numbers(case: &CaseView) -> Markup {
                 dd.value.words {
                     @match last.and_then(|run| run.metrics.contact.as_ref()) {
                         Some(contact) => { (contact.kind.label()) ", " (parts::quantity(Some(contact.relative_speed_mps), 1, "m/s", "")) },
+                        None if last.is_some_and(|run| !run.metrics.obstacles_hit.is_empty()) => "a thing in its way",
                         None => (parts::missing("no contact in the last run")),
                     }
                 }

@@ -13,7 +13,7 @@ pub fn checks(case: Case) -> Markup {
         p.muted { "What record and template say, against what was driven. It is computed from the paths, never from the scenario's labels." }
         @if runs.is_empty() { p.empty { "It was not run." } }
         @if !case.view.assumed.is_empty() {
-            p { "Nobody tells, and so chosen: " (case.view.assumed.iter().map(|assumed| words::clean(assumed, 200).into_owned()).collect::<Vec<_>>().join("; ")) "." }
+            p { "Chosen, as the report tells nothing of it at the contact: " (case.view.assumed.iter().map(|assumed| words::clean(assumed, 200).into_owned()).collect::<Vec<_>>().join("; ")) "." }
         }
         .columns {
             @for (name, run) in &runs {
@@ -64,7 +64,7 @@ pub fn metrics(case: Case) -> Markup {
                         (line("Ended by", &runs, |run| html! { (run.metrics.termination.label()) span.at { " at " } (parts::quantity(Some(run.metrics.duration_s), 1, "s", "")) }))
                         (line("Contact", &runs, |run| match &run.metrics.contact {
                             Some(c) => html! { (c.kind.label()) " with " (words::clean(&c.id, 40)) span.at { " at " } (parts::quantity(Some(c.time_s), 2, "s", "")) },
-                            None => parts::missing("no contact"),
+                            None => parts::missing("no contact with a road user"),
                         }))
                         (line("Contact speeds", &runs, |run| match &run.metrics.contact {
                             Some(c) => html! {
@@ -88,8 +88,8 @@ pub fn metrics(case: Case) -> Markup {
                             (partner_line("Least distance of the centres", &runs, actor, |p| parts::timed(Some(p.min_centre_distance), 2, "m", "")))
                             (partner_line("Least TTC", &runs, actor, |p| parts::timed(p.min_ttc, 2, "s", "they were never on a course to touch")))
                             (partner_line("PET", &runs, actor, |p| parts::timed(p.pet, 2, "s", "no place was crossed by both, one after the other")))
-                            (partner_line("Greatest DRAC", &runs, actor, |p| parts::timed(p.max_drac, 1, "m/s\u{b2}", "the ego never closed in on it")))
-                            (partner_line("Greatest required deceleration", &runs, actor, |p| parts::timed(p.max_required_deceleration, 1, "m/s\u{b2}", "the ego never had to brake for it")))
+                            (partner_line("Greatest DRAC", &runs, actor, |p| parts::timed(p.max_drac, 1, "m/s\u{b2}", "the ego did not close in on it from behind")))
+                            (partner_line("Greatest required deceleration", &runs, actor, |p| parts::timed(p.max_required_deceleration, 1, "m/s\u{b2}", "the ego did not follow it, or had no need to brake for it")))
                             (partner_line("Least time headway", &runs, actor, |p| parts::timed(p.min_headway, 2, "s", "the ego did not follow it")))
                         }
                     }

@@ -11,6 +11,7 @@ use recrash_model::account::{AccountSet, TypeShare};
 use recrash_model::cause::Failures;
 use recrash_model::narrative::Origin;
 use recrash_model::severity::Severity;
+use std::collections::BTreeSet;
 use std::fmt::Write;
 
 /// The overview.
@@ -79,7 +80,7 @@ fn account_sentence(context: &Context, accounts: &AccountSet) -> Markup {
         (thousands(accounts.types.iter().map(|share| share.whole).sum())) " of them with every told fact shown. Told is what the program read in a report: what it misread, it does not find so. "
         @if s.cases < accounts.told.len() { b { (thousands(s.cases)) } " of them were picked. " } @else { "All of them are here. " }
         "In the crashes as reconstructed " b { (words::clean(&suite.ego, 60)) } ", from the handover on, came into the situation of its record in " b { (thousands(first.met)) " of the " (thousands(first.ran)) } " that it drove, and fails "
-        b { (thousands(first.failures.total())) " of those " (thousands(first.met)) } ": " (manners(first.failures)) ". A blow to an ego that stood has nothing to do with what it drove, and one from where it does not look hardly has. "
+        b { (thousands(first.failures.total())) " of those " (thousands(first.met)) } ": " (manners(first.failures)) ". A blow to an ego that stood has seldom to do with what it drove, and one from where it does not look hardly has. "
         "After tuning within what the reports leave open it fails " b { (thousands(last.failures.total())) " of " (thousands(last.met)) } ": " (manners(last.failures)) "; " (thousands(s.by_tuning)) " of them after tuning alone"
         @if s.parked > 0 { "; in " (thousands(s.parked)) " it was parked, and there is nothing to test" }
         ". A failure is a contact, a box gap below " (fixed(suite.profile.failure.min_gap_m, 1).unwrap_or_default())
@@ -101,6 +102,8 @@ fn tile(name: &str, value: Markup, note: Markup, bar: Option<(f64, &str)>) -> Ma
 fn account_tiles(context: &Context, accounts: &AccountSet) -> Markup {
     let s = &context.summary;
     let [first, last] = s.tested;
+    let here: BTreeSet<_> =
+        context.suite.cases.iter().filter_map(|case| Some(case.account.as_ref()?.crash_type)).collect();
     let types = |of: fn(&TypeShare) -> bool| {
         accounts.types.iter().filter(|share| share.crash_type.is_some() && of(share)).count()
     };
@@ -119,9 +122,9 @@ fn account_tiles(context: &Context, accounts: &AccountSet) -> Markup {
                 Some((parts::share(accounts.told.len(), accounts.readable), "good")),
             ))
             (tile(
-                "Crash types told",
-                html! { (types(|share| share.told > 0)) span.of { " of " (types(|_| true)) } },
-                html! { "that occur" },
+                "Crash types in the suite",
+                html! { (here.len()) span.of { " of " (types(|_| true)) } },
+                html! { "that occur; " (types(|share| share.told > 0)) " of them can be told" },
                 None,
             ))
             (tile(
@@ -245,6 +248,7 @@ fn controls(accounts: bool) -> Markup {
         ("passed", "Passes"),
         ("met", "Situation met"),
         ("unmet", "Situation not met"),
+        ("human", "Human at the contact"),
         ("parked", "Parked"),
         ("unfaithful", "Not as told"),
         ("refused", "Refused"),

@@ -47,10 +47,13 @@ pub fn result_chip(result: Result) -> Markup {
         Result::Failed => "bad",
         Result::Struck => "odd",
         Result::Passed => "good",
-        Result::Missing => "none",
+        Result::NotMet | Result::Missing => "none",
     };
-    let why = (result == Result::Struck)
-        .then_some("a failure: it was struck while it stood, which has nothing to do with what it drove");
+    let why = match result {
+        Result::Struck => Some("a failure: it had stood for a second when it was struck, seldom by what it drove"),
+        Result::NotMet => Some("it never came into the situation of the record: no failure, and no pass"),
+        _ => None,
+    };
     html! { span.chip.(class) title=[why] { (result.label()) } }
 }
 

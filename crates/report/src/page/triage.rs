@@ -11,7 +11,7 @@ use recrash_model::metrics::{FindingKind, Timed};
 use recrash_model::preventability::Preventability;
 use recrash_model::rollout::TerminationKind;
 use recrash_model::severity::Severity;
-use recrash_model::triage::{FailureClass, Fared, Triage};
+use recrash_model::triage::{EgoOutcome, FailureClass, Fared, Triage};
 
 /// Scenarios of a class that are named; the table finds the rest. [count]
 const LONGEST_LIST: usize = 30;
@@ -46,7 +46,7 @@ pub fn by_cause(context: &Context) -> Markup {
                 thead { tr { th scope="col" { "Cause" } th.right scope="col" { "Scenarios" } td {} th.right scope="col" title="the greater change of velocity of the two" { "Largest delta-v" } th scope="col" { "Which, the shortest first" } } }
                 tbody { @for (cause, of) in &groups {
                     tr {
-                        th scope="row" { (words::capital(cause.label())) @if *cause == Cause::StruckStanding { .muted { "nothing to do with what it drove" } } }
+                        th scope="row" { (words::capital(cause.label())) @if *cause == Cause::StruckStanding { .muted { "seldom by what it drove" } } }
                         td.right.number { (of.len()) }
                         td.bar-cell { (parts::bar(of.len() as f64 / failed.len() as f64, if *cause == Cause::StruckStanding { "odd" } else { "bad" })) }
                         td.right { (parts::quantity(worst(of), 1, "m/s", "no contact of two road users")) }
@@ -111,7 +111,7 @@ pub fn of_case(case: Case) -> Markup {
             tbody {
                 (row(html! { b { (words::clean(case.context.ego, 60)) } " (under test)" }, "no", Result::of(Some(&last.run.judgement)), last.metrics.min_gap, last.metrics.termination, &kinds))
                 @for other in &triage.others {
-                    (row(html! { (words::clean(&other.ego, 60)) }, avoids(other.fared), if other.failed { Result::Failed } else { Result::Passed }, other.min_gap, other.termination, &other.findings))
+                    (row(html! { (words::clean(&other.ego, 60)) }, avoids(other), if other.failed { Result::Failed } else { Result::Passed }, other.min_gap, other.termination, &other.findings))
                 }
             }
         } }
@@ -119,8 +119,10 @@ pub fn of_case(case: Case) -> Markup {
 }
 
 /// Whether an ego avoids what the system under test fails by, in a word or two.
-fn avoids(fared: Fared) -> &'static str {
-    match fared {
+fn avoids(other: &EgoOutcome) -> &'static str {
+    match other.fared {
+        // Where the system crashes, who only comes near avoids that.
+        Fared::Avoids if other.failed => "the crash, but fails",
         Fared::Avoids => "yes",
         Fared::Alike => "no",
         Fared::Otherwise => "fails otherwise",

@@ -48,6 +48,7 @@ fn retold() -> SuiteView {
             reports: 1,
             crash_type: CrashType::FrontToRear,
             role: None,
+            driver: None,
         });
         // The recorded driver crashes in every one.
         case.before = Some(run(&like, Some(Cause::WasStruck)));
@@ -91,6 +92,16 @@ fn a_run_that_never_came_into_the_situation_is_no_pass() {
     assert_eq!(xml.matches("<skipped message=\"the system never came into the situation").count(), 2, "{xml}");
     assert_eq!(xml.matches("outside the situation of the record").count(), 1, "{xml}");
     assert!(!junit(&retold()).contains("skipped message"));
+}
+
+#[test]
+fn an_ego_that_ends_is_an_error_and_no_skipped_test() {
+    let mut suite = retold();
+    let case = &mut suite.cases[0];
+    (case.after, case.undriven, case.refused) = (None, true, Some("simulate: the ego ended".into()));
+    let xml = junit(&suite);
+    assert!(xml.contains(" tests=\"6\" failures=\"2\" errors=\"1\" skipped=\"0\">"), "{xml}");
+    assert!(xml.contains("<error type=\"not run\" message=\"simulate: the ego ended\"/>"), "{xml}");
 }
 
 #[test]

@@ -116,7 +116,7 @@ def impulse(masses, boxes, speeds, tracks, states):
 class Run:
     """What a rollout shows, from its tracks and events alone."""
 
-    def __init__(self, rollout, limits, masses):
+    def __init__(self, rollout, limits, masses, handover_s):
         actors, events = rollout["actors"], rollout["events"]
         ego, self.values = actors[0], {"duration": rollout["termination"]["time_s"]}
         touches = [e for e in events if e["kind"]["event"] == "contact" and e["kind"]["a"] == 0]
@@ -132,8 +132,8 @@ class Run:
         for at, actor in enumerate(actors[1:], 1):
             from_s, until_s = actor.get("appears_s", 0.0) - 1e-9, actor.get("gone_s", math.inf) - 1e-9
             for k, (mine, other) in enumerate(zip(ego["states"], actor["states"])):
-                if k * STEP_S > end + 1e-9:
-                    break
+                if not handover_s - 1e-9 <= k * STEP_S <= end + 1e-9:
+                    continue
                 moved = (0.0, 0.0) if from_s <= k * STEP_S < until_s else (1e6 - other["x"], 1e6 - other["y"])
                 d = gap(Box(mine, ego["length_m"], ego["width_m"]), Box(other, actor["length_m"], actor["width_m"], moved))
                 least[at], first[at] = min(d, least.get(at, math.inf)), first.get(at, d)
@@ -195,8 +195,7 @@ def same(a, b):
 
 def is_shown(number):
     shown, value = number["shown"].split(" ")[0], number["value"]
-    if isinstance(value, str):
-        return shown == value
+    if isinstance(value, str): return shown == value
     unit, digits = 100.0 if number["unit"] == "%" else 1.0, len(shown.partition(".")[2])
     return abs(float(shown) - unit * value) <= 0.501 * 10.0**-digits
 
@@ -216,7 +215,8 @@ def main(folder):
 
     def runs(test):
         if test not in cached:
-            cached[test] = Run(read(by_id[test]["rollout"]), limits, tests["masses_kg"])
+            ego = read(f"suite/scenarios/{test}.json")["ego"]
+            cached[test] = Run(read(by_id[test]["rollout"]), limits, tests["masses_kg"], ego.get("handover_s", 0.0))
         return cached[test]
 
     lists = lambda place: read(place[0])[place[1]]
