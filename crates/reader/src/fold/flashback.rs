@@ -70,7 +70,7 @@ fn until_the_impact(story: &Story, lead: usize) -> Range<usize> {
             && words.take(5).any(|word| matches!(word, "impact" | "contact" | "collision" | "crash"));
         then || is_aftermath(story, *sentence) || story.frames.iter().any(stops)
     };
-    lead..(lead + 1..story.sentences.len()).find(over).unwrap_or(story.sentences.len())
+    0..(lead + 1..story.sentences.len()).find(over).unwrap_or(story.sentences.len())
 }
 
 /// The sentences behind the crash up to the one that tells it a second time, with what led to it: "reversed and struck it. ... The system

@@ -229,3 +229,12 @@ fn who_goes_backwards_across_the_way_of_one_that_drives_into_it_is_there_first()
     let account = facts(&common::account_of(text).expect("an account"));
     assert_eq!((account["crash_type"].as_str(), account["order"].as_str()), ("backing", "cp"), "{account:?}");
 }
+
+/// Where nobody tells the touch, acts of one sentence still come behind those of the one before.
+#[test]
+fn without_a_told_touch_one_sentence_comes_behind_the_other() {
+    let text =
+        "The AV stopped on Elm Street. A hatchback turned left and crossed the lane of the AV. There were no injuries.";
+    let acts = account_of(text).expect("an account").partner.expect("a partner").acts;
+    assert!(acts[0].after_other.is_some(), "{acts:?}");
+}
