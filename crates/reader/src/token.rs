@@ -166,6 +166,10 @@ pub fn sentences(tokens: &[Token]) -> Vec<Sentence> {
     let mut all = Vec::new();
     let mut first = 0;
     for (at, token) in tokens.iter().enumerate() {
+        if let Some(end) = ends_at_a_name(tokens, at).filter(|end| *end > first) {
+            all.push(Sentence { first, end });
+            first = at;
+        }
         if token.kind != TokenKind::Mark || !ends_sentence(tokens, at) {
             continue;
         }
@@ -178,6 +182,22 @@ pub fn sentences(tokens: &[Token]) -> Vec<Sentence> {
         all.push(Sentence { first, end: tokens.len() });
     }
     all
+}
+
+/// Whether a word begins a sentence where it is written large.
+fn opens(word: &str) -> bool {
+    matches!(word, "the" | "a" | "an" | "as" | "while" | "when" | "at")
+}
+
+/// "It stood at [XXX] A van came": the token behind a masked name that ends a sentence without a full stop, where the next one begins here.
+fn ends_at_a_name(tokens: &[Token], at: usize) -> Option<usize> {
+    if !tokens[at].capital || !opens(&tokens[at].text) {
+        return None;
+    }
+    let name = tokens[..at].iter().rposition(|token| token.text != "\u{b6}")?;
+    // A street may be called "The Alameda".
+    let goes_on = tokens.get(at + 1).is_some_and(|next| next.kind == TokenKind::Word && !next.capital);
+    (tokens[name].kind == TokenKind::Name && goes_on).then_some(name + 1)
 }
 
 fn ends_sentence(tokens: &[Token], at: usize) -> bool {
@@ -199,9 +219,7 @@ fn ends_sentence(tokens: &[Token], at: usize) -> bool {
             let apart = after.start > token.end;
             if initial || abbreviated {
                 // `St. The van ...` ends one all the same.
-                return abbreviated
-                    && matches!(after.text.as_str(), "the" | "a" | "an" | "as" | "while" | "when" | "at")
-                    && after.capital;
+                return abbreviated && opens(&after.text) && after.capital;
             }
             begins || apart
         }
@@ -246,5 +264,7 @@ mod tests {
         let withheld =
             split("It ran on [REDACTED, MAY CONTAIN X] and stopped. It left [REDACTED, MAY CONTAIN X], too.");
         assert_eq!(withheld, ["it ran on [xxx] and stopped", "it left [xxx] , too"]);
+        let masked = split("It stood at [XXX]  A van came down [XXX] The Alameda.");
+        assert_eq!(masked, ["it stood at [xxx]", "a van came down [xxx] the alameda"]);
     }
 }

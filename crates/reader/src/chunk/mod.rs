@@ -44,6 +44,8 @@ pub struct Noun {
     pub tractor: bool,
     /// It is called the second.
     pub second: bool,
+    /// It is another one with a name of the subject vehicle: "a different AV".
+    pub namesake: bool,
     /// More than one.
     pub several: bool,
     /// Somebody in a vehicle.
@@ -66,6 +68,7 @@ impl Noun {
             one_of: false,
             tractor: false,
             second: false,
+            namesake: false,
             several: false,
             occupant: None,
             owner: None,

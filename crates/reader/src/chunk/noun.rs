@@ -5,8 +5,35 @@ use crate::lexicon::{Adjective, Found, Meaning, Occupant};
 use crate::token::TokenKind;
 use recrash_model::account::{Kind, KindGroup};
 
+/// Most words that tell what trailer it is: "flat-bed". [tokens]
+const TRAILER_NAME: usize = 3;
+
 /// Most tokens before the head of a noun.
 const LONGEST_LEAD: usize = 10;
+
+/// What is called by names that makes have too: "Lincoln Boulevard".
+const PLACES: [&str; 20] = [
+    "airport",
+    "boulevard",
+    "blvd",
+    "street",
+    "st",
+    "avenue",
+    "ave",
+    "road",
+    "rd",
+    "drive",
+    "dr",
+    "parkway",
+    "way",
+    "terminal",
+    "highway",
+    "park",
+    "plaza",
+    "lane",
+    "center",
+    "court",
+];
 
 /// A noun that is being read.
 struct Draft {
@@ -139,6 +166,12 @@ impl Chunker<'_> {
             && inner.kind.is_some_and(|kind| kind.group() == KindGroup::Object)
         {
             return Lead::Whole(Noun { article: draft.noun.article, ..inner }, at + 2 + length - draft.first);
+        }
+        // "A Tern ADS-equipped car": who has one is told of.
+        let equipped = matches!(self.text(at), "ads" | "av" | "autonomy") && self.text(at + 1) == "equipped";
+        if equipped && self.vehicle(at + 2) {
+            (draft.subject, draft.at) = (true, at + 2);
+            return Lead::On;
         }
         let known = self.lexicon.longest(self.tokens, at, |meaning| {
             matches!(meaning, Meaning::Adjective(_) | Meaning::Make | Meaning::Company)
@@ -349,12 +382,21 @@ impl Chunker<'_> {
         if at <= first || noun.article == Article::None || !(subject || make) {
             return None;
         }
+        if !subject && (first..at).any(|at| self.names_a_place(at)) {
+            return None;
+        }
         if subject {
             noun.subject = true;
         } else {
             noun.kind = Some(Kind::Vehicle);
         }
         self.finish(noun, first, at)
+    }
+
+    /// "the Bayside International Airport": a make that stands here is of the name of a place.
+    fn names_a_place(&self, at: usize) -> bool {
+        let capital = |at: usize| self.tokens.get(at).is_some_and(|token| token.capital);
+        self.lexicon.is_make(self.text(at)) && capital(at) && capital(at + 1) && PLACES.contains(&self.text(at + 1))
     }
 
     pub(super) fn head(&self, at: usize) -> Option<(Meaning, usize)> {
@@ -446,12 +488,13 @@ impl Chunker<'_> {
             self.numbered(&mut draft);
             next = self.next_head(&draft);
         }
-        let Draft { mut noun, first, at, mut subject, plural, .. } = draft;
+        let at = self.with_trailer(&mut draft);
+        let Draft { mut noun, first, mut subject, plural, .. } = draft;
         if subject
             && noun.occupant.is_none()
             && noun.adjectives.iter().any(|adjective| matches!(adjective, Adjective::Another | Adjective::Other))
         {
-            subject = false;
+            (subject, noun.namesake) = (false, true);
             noun.kind = noun.kind.or(Some(Kind::PassengerCar));
         }
         noun.subject = (subject || self.text(first) == "our") && noun.occupant.is_none();
@@ -463,6 +506,30 @@ impl Chunker<'_> {
             noun.kind = Some(Kind::Scooter);
         }
         self.finish(noun, first, at)
+    }
+
+    /// "a truck and flat-bed trailer" is one. The token behind it, or behind the noun.
+    fn with_trailer(&self, draft: &mut Draft) -> usize {
+        let kind = match draft.noun.kind {
+            Some(kind) if kind.group() == KindGroup::Truck => Kind::SemiTrailerTruck,
+            Some(Kind::Pickup) => Kind::PickupWithTrailer,
+            _ => return draft.at,
+        };
+        let own = |at: usize| self.text(at) == "trailer";
+        let tells = |at: usize| {
+            let word = self.text(at);
+            let another = matches!(word, "another" | "second" | "third" | "different" | "other" | "parked" | "stopped");
+            !another && (self.adjective(at) || matches!(word, "flat" | "bed" | "flatbed" | "box" | "utility"))
+        };
+        let trailer = (draft.at + 1..=draft.at + 1 + TRAILER_NAME).find(|at| own(*at));
+        let named = trailer.filter(|trailer| (draft.at + 1..*trailer).all(tells));
+        match named.filter(|_| self.text(draft.at) == "and" && !draft.plural && draft.noun.occupant.is_none()) {
+            Some(trailer) => {
+                draft.noun.kind = Some(kind);
+                trailer + 1
+            }
+            None => draft.at,
+        }
     }
 
     /// A head that names a kind; "truck trailer", "pickup with trailer" are one.

@@ -42,7 +42,7 @@ fn in_lane_names(word: &str) -> bool {
         || matches!(word, "adjacent" | "next" | "neighboring" | "same" | "inside" | "outside" | "curb" | "parking")
         || matches!(word, "opposing" | "opposite" | "oncoming" | "designated" | "emergency" | "slow" | "fast")
         || matches!(word, "passing" | "number" | "second" | "of" | "and" | "two" | "three" | "four")
-        || matches!(word, "shared" | "way")
+        || matches!(word, "shared" | "way" | "vehicle")
 }
 
 /// So many lanes.
@@ -165,7 +165,9 @@ impl Chunker<'_> {
             return Some(numbered);
         }
         let two_way = word == "two" && self.text(at + 1) == "way";
-        if !in_lane_names(word) || !two_way && matches!(word, "and" | "of" | "two" | "three" | "four" | "way") {
+        if !in_lane_names(word)
+            || !two_way && matches!(word, "and" | "of" | "two" | "three" | "four" | "way" | "vehicle")
+        {
             return None;
         }
         let end = (at..self.tokens.len().min(at + LONGEST_LANE_NAME)).find(|&at| {

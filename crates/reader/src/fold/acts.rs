@@ -2,10 +2,10 @@
 
 use super::Reading;
 use super::across::begins;
-use super::entry::{self, reach};
+use super::entry;
 use crate::chunk::{Joint, Spot};
 use crate::frame::{Frame, sided};
-use crate::lexicon::{Lexicon, Progress, Relation, Sense};
+use crate::lexicon::{Form, Lexicon, Progress, Relation, Sense};
 use crate::token::Token;
 use crate::world::{Actor, SUBJECT};
 use recrash_model::account::{Account, Act, ActFact, Kind, KindGroup, LaneWord, LeftRight, Manner, RoadFeature};
@@ -23,6 +23,9 @@ pub(super) fn acts(reading: &Reading<'_>, actor: Actor) -> Vec<ActFact> {
         if reading.doer(frame) != Some(actor) && !pushed {
             continue;
         }
+        if is_not_completed(reading, frame) {
+            all.iter_mut().filter(|fact| Some(fact.act) == frame.act() && !fact.after_contact).for_each(leave_off);
+        }
         let Some(act) = act_of(reading, number, frame, pushed) else { continue };
         let side = side_of(reading, actor, frame, act).or_else(|| back_to_the_middle(reading, frame, act, &all));
         let after_contact = reading.is_after(number);
@@ -35,7 +38,7 @@ pub(super) fn acts(reading: &Reading<'_>, actor: Actor) -> Vec<ActFact> {
             done: is_done(reading, frame),
             after_other: None,
             manner: manner(reading, number),
-            source: reading.words(frame.first, reach(reading, frame, act)),
+            source: entry::words(reading, frame, act),
         };
         let entry = entry::beside(reading, frame, &fact);
         if let Some(entry) = entry.as_ref().filter(|entry| entry.before) {
@@ -74,6 +77,21 @@ pub(super) fn acts(reading: &Reading<'_>, actor: Actor) -> Vec<ActFact> {
     }
     told_ahead(reading, &mut all);
     all
+}
+
+/// "was unable to complete the lane change": what it had told of it was begun.
+fn is_not_completed(reading: &Reading<'_>, frame: &Frame) -> bool {
+    let word = reading.story.tokens[frame.first].text.as_str();
+    frame.negated && sided_course(frame.act()) && ["complet", "finish"].iter().any(|stem| word.starts_with(stem))
+}
+
+/// Acts that take a way of which some may be left.
+fn sided_course(act: Option<Act>) -> bool {
+    matches!(act, Some(Act::LaneChange | Act::Turn | Act::UTurn | Act::Pass | Act::Park))
+}
+
+fn leave_off(fact: &mut ActFact) {
+    (fact.begun, fact.done) = (true, false);
 }
 
 /// "It began to maneuver around the truck": it was about to pass it. Told with a side, it had gone out to that.
@@ -284,6 +302,9 @@ fn act_of(reading: &Reading<'_>, number: usize, frame: &Frame, pushed: bool) -> 
     if frame.sense == Sense::Face && turned_green(reading, frame) && moved().is_none() {
         return Some(Act::Hold);
     }
+    if yields_in_motion(reading, number, frame) {
+        return Some(Act::Slow);
+    }
     let act = frame.act()?;
     // "Its front wheel came off": it did not fall itself.
     if act == Act::Fall && frame.who == Some(SUBJECT) && frame.with.is_some() && reading.doer(frame) == Some(SUBJECT) {
@@ -314,6 +335,20 @@ fn act_of(reading: &Reading<'_>, number: usize, frame: &Frame, pushed: bool) -> 
         Act::Pass if passes_nobody(reading, frame) => Act::Follow,
         act => act,
     })
+}
+
+/// "It turned, and yielded to a man": who gives way to somebody and had not slowed since it drove has slowed for that.
+fn yields_in_motion(reading: &Reading<'_>, number: usize, frame: &Frame) -> bool {
+    let to =
+        frame.object.filter(|to| frame.sense == Sense::Yield && frame.form != Form::Base && Some(*to) != frame.who);
+    let slows = |act: Option<Act>| matches!(act, Some(Act::Stop | Act::Hold | Act::Slow | Act::Park | Act::PullOver));
+    // "slowing and moving at 2 mph, yielding to it": told with the act itself.
+    let same = |other: &&Frame| other.sentence == frame.sentence && other.who == frame.who && other.happened();
+    let told = reading.story.frames.iter().filter(same).any(|other| slows(other.act()));
+    let last = last_act(reading, number, frame, |_| true);
+    // "reversed without yielding".
+    let drives = last.is_some() && !slows(last) && last != Some(Act::Reverse);
+    to.is_some() && !told && drives && !reading.is_after(number)
 }
 
 /// "entered the left turn lane", of who drove along before: it changed lanes. Out of a place beside the road, or from a crossing one,

@@ -92,11 +92,13 @@ impl Contacts {
             let headline = frames.iter().position(|frame| frame.sense == Sense::Headline);
             // Without a contact of its own, the last thing the partner does is next to it.
             contacts.first = contacts.partner.and_then(|partner| {
-                frames.iter().rposition(|frame| {
+                let acts = |frame: &Frame| {
                     frame.who == Some(partner)
                         && frame.act().is_some_and(|act| act != Act::Leave)
                         && Some(frame.sentence) != headline
-                })
+                };
+                let before = |frame: &Frame| acts(frame) && !tells_harm(story, frame.sentence);
+                frames.iter().rposition(before).or_else(|| frames.iter().rposition(acts))
             });
         }
         contacts
@@ -274,6 +276,13 @@ fn near(story: &Story, record: &CrashRecord, number: usize) -> Option<Actor> {
     let pair = story.frames[number].sense == Sense::ContactMade;
     let named = before(false).filter(|_| pair).or_else(|| before(true));
     named.or_else(|| announced(story)).or_else(|| only_other(story, record))
+}
+
+/// Whether a sentence tells what harm was done, or of exchanges of details: nobody drives there any more.
+pub(super) fn tells_harm(story: &Story, sentence: usize) -> bool {
+    let range = story.sentences[sentence];
+    let harm = |word: &str| matches!(word, "injuries" | "injury" | "damage" | "exchanged" | "police");
+    story.tokens[range.first..range.end].iter().any(|token| harm(&token.text))
 }
 
 fn lively(story: &Story, actor: Actor) -> bool {

@@ -1,6 +1,7 @@
 //! Who drove at the contact: the system, a human, or a human who took over.
 
 use super::Reading;
+use super::contact::tells_harm;
 use crate::frame::{Frame, Story};
 use crate::lexicon::{Lexicon, Occupant, Sense};
 use crate::token::Token;
@@ -177,8 +178,12 @@ fn by_hand_for(words: &[Token]) -> Option<usize> {
     (any(&["seconds"]) && any(&["prior", "before"])).then_some(at)
 }
 
-/// Whether a sentence stands behind the one of the contact.
+/// Whether a sentence stands behind the one of the contact; where nobody tells that, whether it tells what came of it.
 fn sentence_after(reading: &Reading<'_>, token: usize) -> bool {
-    let contact = reading.contacts.first.map(|number| reading.story.sentences[reading.story.frames[number].sentence]);
-    contact.is_some_and(|sentence| token >= sentence.end)
+    let story = &reading.story;
+    let Some(number) = reading.contacts.first else {
+        let here = story.sentences.iter().position(|sentence| (sentence.first..sentence.end).contains(&token));
+        return here.is_some_and(|sentence| tells_harm(story, sentence));
+    };
+    token >= story.sentences[story.frames[number].sentence].end
 }

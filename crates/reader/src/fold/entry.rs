@@ -3,8 +3,9 @@
 
 use super::Reading;
 use super::across::begins;
+use crate::chunk::is_determiner;
 use crate::frame::Frame;
-use recrash_model::account::{Act, ActFact};
+use recrash_model::account::{Act, ActFact, Source};
 
 /// So many words stand between a verb and the intersection into which it leads, at most: "proceeded a short distance forward into the". [tokens]
 const BETWEEN: usize = 10;
@@ -145,8 +146,47 @@ fn in_a_lane(reading: &Reading<'_>, frame: &Frame) -> Option<usize> {
     (word(lane) == "lane").then_some(lane + 1)
 }
 
+/// The words of an act.
+pub(super) fn words(reading: &Reading<'_>, frame: &Frame, act: Act) -> Source {
+    let (first, end) = match act {
+        Act::OpenDoor => of_door(reading, frame),
+        _ => (frame.first, reach(reading, frame, act)),
+    };
+    reading.words(first, end)
+}
+
+/// So many words stand between a verb and the door that it opens, at most: "opened the front passenger side door". [tokens]
+const TO_DOOR: usize = 6;
+
+/// So many words stand between a door and the verb that tells that it opened: "the door on the left side of the van opened". [tokens]
+const FROM_DOOR: usize = 8;
+
+/// So many words before "door" tell which one it is. [tokens]
+const NAME_OF_DOOR: usize = 5;
+
+/// The tokens of an opening with those of the door: "opened the rear driver side door", "the front door of the van opened".
+pub(super) fn of_door(reading: &Reading<'_>, frame: &Frame) -> (usize, usize) {
+    let word = |at: usize| reading.story.tokens[at].text.as_str();
+    let door = |at: &usize| matches!(word(*at), "door" | "doors");
+    let other = |at: &usize| matches!(word(*at), "," | "and" | "into" | "when" | "while" | "as" | "then" | "after");
+    let sentence = reading.story.sentences[frame.sentence];
+    let next = reading.story.frames.iter().map(|other| other.first).filter(|first| *first >= frame.end).min();
+    let end = sentence.end.min(frame.end + TO_DOOR).min(next.unwrap_or(sentence.end));
+    if (frame.first..frame.end).any(|at| door(&at)) {
+        return (frame.first, frame.end);
+    }
+    if let Some(behind) = (frame.end..end).take_while(|at| !other(at)).find(door) {
+        return (frame.first, behind + 1);
+    }
+    let mut before = (sentence.first..frame.first).rev().take(FROM_DOOR).take_while(|at| !other(at));
+    let Some(named) = before.find(door) else { return (frame.first, frame.end) };
+    let name = (sentence.first..named).rev().take(NAME_OF_DOOR);
+    let first = name.take_while(|at| !other(at) && !is_determiner(word(*at))).last().unwrap_or(named);
+    (first, frame.end)
+}
+
 /// The token behind the words of an act: of who goes into or through an intersection, or stands in a lane, up to that word.
-pub(super) fn reach(reading: &Reading<'_>, frame: &Frame, act: Act) -> usize {
+fn reach(reading: &Reading<'_>, frame: &Frame, act: Act) -> usize {
     if matches!(act, Act::Hold | Act::Stop | Act::Park) {
         return in_a_lane(reading, frame).unwrap_or(frame.end);
     }

@@ -13,7 +13,11 @@ pub(super) fn told_back(story: &Story, contacts: &Contacts) -> Range<usize> {
     let lead = contact.sentence;
     let acts = |frame: &&Frame| frame.act().is_some() && frame.happened() && !frame.aside;
     if !contact.is_contact() {
-        return 0..0;
+        return until_the_impact(story, lead);
+    }
+    let anew = begins_anew(story, contacts, contact);
+    if !anew.is_empty() {
+        return anew;
     }
     if story.frames.iter().filter(acts).any(|frame| frame.sentence < lead) {
         return told_again(story, contact);
@@ -26,6 +30,47 @@ pub(super) fn told_back(story: &Story, contacts: &Contacts) -> Range<usize> {
     let Some(begin) = begins else { return 0..0 };
     let end = (begin..story.sentences.len()).find(|&sentence| is_aftermath(story, sentence));
     begin..end.unwrap_or(story.sentences.len())
+}
+
+/// "A van struck it. The van initially waited. ... It set off and drove into it": the sentences from the one that says how it began up to
+/// the one that tells the crash again.
+fn begins_anew(story: &Story, contacts: &Contacts, contact: &Frame) -> Range<usize> {
+    let one = |actor: Option<usize>| actor == Some(SUBJECT) || actor.is_some() && actor == contacts.partner;
+    let initially = |sentence: usize| {
+        let range = story.sentences[sentence];
+        let words = &story.tokens[range.first..range.end.min(range.first + HOW_IT_BEGAN)];
+        words.iter().any(|token| token.text == "initially")
+    };
+    let next = contact.sentence + 1;
+    if next >= story.sentences.len() || !initially(next) || is_aftermath(story, next) {
+        return 0..0;
+    }
+    let touches =
+        |frame: &&Frame| frame.is_contact() && one(frame.who) && one(frame.object) && frame.who != frame.object;
+    let again = story.frames.iter().filter(touches).map(|frame| frame.sentence).find(|sentence| *sentence > next);
+    again
+        .filter(|again| !(next..=*again).any(|sentence| is_aftermath(story, sentence)))
+        .map_or(0..0, |again| next..again + 1)
+}
+
+/// "Initially" stands among the first words of a sentence that says how it began. [tokens]
+const HOW_IT_BEGAN: usize = 6;
+
+/// Where nobody tells the contact, all that is told is told of the time before it, up to what came of it.
+fn until_the_impact(story: &Story, lead: usize) -> Range<usize> {
+    let over = |sentence: &usize| {
+        let stops = |frame: &Frame| {
+            let ends = matches!(frame.act(), Some(Act::Park | Act::PullOver)) || frame.sense == Sense::TakeOver;
+            frame.sentence == *sentence && frame.who == Some(SUBJECT) && ends
+        };
+        let words = story.sentences[*sentence];
+        let mut words = story.tokens[words.first..words.end].iter().map(|token| token.text.as_str());
+        // "At the time of the impact": told of that moment.
+        let then = words.next() == Some("at")
+            && words.take(5).any(|word| matches!(word, "impact" | "contact" | "collision" | "crash"));
+        then || is_aftermath(story, *sentence) || story.frames.iter().any(stops)
+    };
+    0..(lead + 1..story.sentences.len()).find(over).unwrap_or(story.sentences.len())
 }
 
 /// The sentences behind the crash up to the one that tells it a second time, with what led to it: "reversed and struck it. ... The system

@@ -107,6 +107,7 @@ impl Reading<'_> {
             || frame.sentence > at.sentence && frame.who != Some(SUBJECT) && self.had_before(frame.sentence)
             || frame.looks_back
             || self.is_of_having(frame) && frame.sentence == at.sentence
+            || self.had_been_at(frame)
             || frame.aside && frame.sentence == at.sentence
         {
             return false;
@@ -133,6 +134,13 @@ impl Reading<'_> {
     fn is_of_having(&self, frame: &Frame) -> bool {
         let word = |back: usize| frame.first.checked_sub(back).map_or("", |at| self.story.tokens[at].text.as_str());
         (1..4).any(|back| word(back) == "having" && word(back + 1) == ",")
+    }
+
+    /// "It was struck. It had been braking for a dog": told of the time before, of whomever.
+    fn had_been_at(&self, frame: &Frame) -> bool {
+        let word = |back: usize| frame.first.checked_sub(back).map_or("", |at| self.story.tokens[at].text.as_str());
+        let going = !matches!(frame.act(), None | Some(Act::Hold | Act::Leave | Act::Pushed));
+        going && frame.form == crate::lexicon::Form::Ing && (word(2), word(1)) == ("had", "been")
     }
 
     /// "struck it, then drove off when the light changed": the clause belongs to what came of the crash.
@@ -467,7 +475,9 @@ fn door(reading: &Reading<'_>) -> Option<Fact<Striker>> {
         _ => frame.object,
     }?;
     let value = if owner == SUBJECT { Striker::Sv } else { Striker::Cp };
-    Some(Fact { value, source: reading.of(frame) })
+    let opens = frame.act() == Some(Act::OpenDoor);
+    let (first, end) = if opens { entry::of_door(reading, frame) } else { (frame.first, frame.end) };
+    Some(reading.told(value, first, end))
 }
 
 fn injury(reading: &Reading<'_>) -> Option<Fact<bool>> {

@@ -1,9 +1,10 @@
 //! Where it happened.
 
 use super::Reading;
+use crate::frame::Frame;
 use crate::lexicon::Lexicon;
-use crate::token::number;
-use recrash_model::account::{Fact, Place, PlaceKind, RoadFeature};
+use crate::token::{Sentence, Token, number};
+use recrash_model::account::{Act, Fact, Place, PlaceKind, RoadFeature, Source};
 use recrash_model::template::RoadType;
 
 /// Words behind a garage or a lot that name the way into it.
@@ -15,7 +16,7 @@ pub(crate) fn place(reading: &Reading<'_>) -> Place {
     let story = &reading.story;
     let record = reading.record;
     let mut place = Place::default();
-    for (sentence, standing) in story.sentences.iter().zip(&story.standing) {
+    for (number, (sentence, standing)) in story.sentences.iter().zip(&story.standing).enumerate() {
         if *standing || is_after(reading, sentence.first) {
             continue;
         }
@@ -25,6 +26,7 @@ pub(crate) fn place(reading: &Reading<'_>) -> Place {
                 place.features.push(reading.told(feature, sentence.first + at, sentence.first + at + length));
             }
         }
+        kerbs(reading, &mut place, number, *sentence);
         for (kind, at, length) in lexicon.places(words) {
             // Somebody turns into it.
             let way_in = words.get(at + length).is_some_and(|next| WAYS_IN.contains(&next.text.as_str()));
@@ -64,6 +66,54 @@ pub(crate) fn place(reading: &Reading<'_>) -> Place {
     place.lighting = record.lighting.map(|lighting| Fact::of_column(lighting, "Lighting"));
     place.weather = record.weather.iter().map(|weather| Fact::of_column(*weather, "Weather")).collect();
     place
+}
+
+/// Words that lead to a kerb at which somebody stands.
+const TO_KERB: [&str; 9] = ["at", "near", "by", "beside", "along", "against", "to", "toward", "towards"];
+
+/// So many bytes stand between the words that somebody stood and those for the kerb, at most. [bytes]
+const NEAR_STAND: usize = 50;
+
+/// "was parked near the curb", "pulled toward the right curb and stopped": each mention of a kerb at which somebody stands, whatever else of
+/// the kind was named before.
+fn kerbs(reading: &Reading<'_>, place: &mut Place, number: usize, sentence: Sentence) {
+    let tokens = &reading.story.tokens;
+    let word = |at: usize| tokens[at].text.as_str();
+    let partly = (sentence.first..sentence.end).any(|at| matches!(word(at), "partially" | "partly"));
+    for curb in (sentence.first..sentence.end).filter(|at| word(*at) == "curb" && !partly) {
+        let Some(first) = leads_to_kerb(tokens, sentence.first, curb) else { continue };
+        let (start, end) = (tokens[first].start, tokens[curb].end);
+        let named = |fact: &Fact<RoadFeature>| {
+            fact.value == RoadFeature::ParkingLane
+                && matches!(&fact.source, Source::Words { start, end, .. } if *start < tokens[curb].end && tokens[curb].start < *end)
+        };
+        let stands = |frame: &Frame| {
+            let (from, to) = (tokens[frame.first].start, tokens[frame.end - 1].end);
+            let near = to <= start && start - to < NEAR_STAND || end <= from && from - end < NEAR_STAND;
+            frame.sentence == number && near && frame.happened() && is_stand(frame.act())
+        };
+        if !place.features.iter().any(named) && reading.story.frames.iter().any(stands) {
+            place.features.push(reading.told(RoadFeature::ParkingLane, first, curb + 1));
+        }
+    }
+}
+
+fn is_stand(act: Option<Act>) -> bool {
+    matches!(act, Some(Act::Hold | Act::Stop | Act::Park | Act::PullOver))
+}
+
+/// The token of "at" in "at the northwest-bound curb", where these words lead to the kerb that is named here.
+fn leads_to_kerb(tokens: &[Token], from: usize, curb: usize) -> Option<usize> {
+    let word = |at: usize| tokens[at].text.as_str();
+    let tells = |at: &usize| {
+        let compass = ["north", "south", "east", "west"].iter().any(|stem| word(*at).starts_with(stem));
+        compass || matches!(word(*at), "left" | "right" | "near" | "bound" | "side" | "hand" | "outer")
+    };
+    let lane = tokens.get(curb + 1).is_some_and(|next| matches!(next.text.as_str(), "lane" | "cut" | "ramp"));
+    let told = (from..curb).rev().take(2).take_while(tells).count();
+    let article = curb.checked_sub(told + 1).filter(|at| *at >= from && matches!(word(*at), "the" | "a" | "its"));
+    let at = article?.checked_sub(1)?;
+    (!lane && at >= from && TO_KERB.contains(&word(at))).then_some(at)
 }
 
 /// Sentences behind the one of the contact tell of where they drove then.

@@ -1,7 +1,7 @@
 //! Where others than the two are, seen from the subject vehicle.
 
 use super::Reading;
-use super::origin::{Clues, first_relation, side_of_lane, side_of_road_of};
+use super::origin::{Clues, comes_against, first_relation, side_of_lane, side_of_road_of};
 use crate::frame::{Frame, zone_of};
 use crate::lexicon::{Form, Relation, Sense};
 use crate::world::{Actor, SUBJECT};
@@ -224,7 +224,7 @@ fn between(frame: &Frame, other: &Frame, token: usize) -> bool {
 fn in_other_lane(clues: &Clues<'_>) -> Option<Fact<Origin>> {
     let reading = clues.reading;
     let (own, _, _) = reading.story.world.actors[SUBJECT].lane?;
-    if reading.did(SUBJECT, Act::LaneChange) || reading.did(SUBJECT, Act::Turn) {
+    if reading.did(SUBJECT, Act::LaneChange) || reading.did(SUBJECT, Act::Turn) || comes_against(clues) {
         return None;
     }
     let beside = |side: LeftRight| Origin::Beside { side };

@@ -305,6 +305,11 @@ impl Parser<'_> {
         let bare = matches!(self.tokens[placed.first].text.as_str(), "north" | "south" | "east" | "west");
         let compass = if from && bare { compass.turned(4) } else { compass };
         let stands = (compass, placed.first, placed.end);
+        if let Some(other) = self.named_in_lane(placed, carry) {
+            self.world.actors[other].heading.get_or_insert(stands);
+            carry.preposition = None;
+            return;
+        }
         let onto = matches!(carry.preposition, Some("onto" | "into" | "to"));
         carry.preposition = None;
         // Behind a noun that is an object: "a truck facing east" has its own frame; "yield to a van northbound on ..." is rare.
@@ -332,6 +337,18 @@ impl Parser<'_> {
                 }
             }
         }
+    }
+
+    /// "It slowed for cars in the eastbound lane": whom the lane is told of, where the direction of who slowed is known.
+    fn named_in_lane(&self, placed: &Placed, carry: &Carry) -> Option<Actor> {
+        let word = |at: usize| self.tokens.get(at).map_or("", |token| token.text.as_str());
+        let lane = matches!(word(placed.end), "lane" | "lanes" | "direction");
+        let last = carry.last.as_ref().filter(|last| lane && last.piece.is_none() && last.actor != SUBJECT)?;
+        let behind =
+            matches!(word(last.end), "in" | "on") && word(last.end + 1) == "the" && last.end + 2 == placed.first;
+        let frame = &self.frames[carry.frame?];
+        let known = frame.who.is_some_and(|who| who != last.actor && self.world.actors[who].heading.is_some());
+        (behind && known).then_some(last.actor)
     }
 
     /// Whether a direction is that of a lane which somebody crosses, or stops in on its way across.

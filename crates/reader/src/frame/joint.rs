@@ -1,8 +1,10 @@
 //! Where one clause ends and the next begins: "and", "when", "after", "before", "because", a comma, "that".
 
+use super::Frame;
 use super::parser::{Carry, Mention, Parser};
 use super::row::goes_on_behind_comma;
-use crate::chunk::{Chunk, Joint, Placed};
+use super::supposed::expects;
+use crate::chunk::{Article, Chunk, Joint, Placed};
 use crate::lexicon::{Form, Relation, Sense};
 use crate::world::SUBJECT;
 use recrash_model::account::{Kind, KindGroup};
@@ -108,16 +110,41 @@ impl Parser<'_> {
         }
     }
 
+    /// "As it slowed, there was a van passing": a clause of its own, about who is named behind it.
+    pub(super) fn brings_on(&self, all: &[Placed], at: usize, carry: &mut Carry) -> bool {
+        let there = at > 0 && self.tokens[all[at - 1].first].text == "there" && carry.frame.is_some();
+        let noun = matches!(all.get(at + 1).map(|next| &next.chunk), Some(Chunk::Noun(noun)) if noun.article == Article::Indefinite);
+        let does = matches!(all.get(at + 2).map(|next| &next.chunk), Some(Chunk::Verb(_, Form::Ing)));
+        if !(there && noun && does) {
+            return false;
+        }
+        (carry.frame, carry.subject, carry.joint) = (None, None, None);
+        (carry.has_verb, carry.relative, carry.fresh, carry.governed) = (false, false, true, false);
+        (carry.preposition, carry.relation, carry.progress, carry.to) = (None, None, None, false);
+        carry.clause += 1;
+        true
+    }
+
     /// "It detected that the bus was stopping and moved back": who saw what went on did so.
     fn saw_and_did(&self, next: Option<&Chunk>, carry: &Carry) -> Option<Mention> {
         let main = carry.main.as_ref().filter(|main| carry.subject.as_ref() != Some(main))?;
         let frame = &self.frames[carry.frame?];
+        let past = matches!(next, Some(Chunk::Verb(_, Form::Past)));
+        if past && frame.who != Some(main.actor) && self.expects(main, frame) {
+            return Some(main.clone());
+        }
         let seen = frame.form == Form::Ing && frame.who != Some(main.actor) && frame.sentence == self.sentence;
         let saw = self.frames.iter().rfind(|before| {
             before.sentence == self.sentence && before.sense == Sense::See && before.who == Some(main.actor)
         })?;
         let that = self.tokens[saw.end..frame.first].first().is_some_and(|token| token.text == "that");
-        (seen && that && matches!(next, Some(Chunk::Verb(_, Form::Past)))).then(|| main.clone())
+        (seen && that && past).then(|| main.clone())
+    }
+
+    /// "It predicted that the van would wait and passed it": who expects something of another goes on.
+    fn expects(&self, main: &Mention, frame: &Frame) -> bool {
+        let would = frame.first > 0 && matches!(self.tokens[frame.first - 1].text.as_str(), "would" | "will" | "might");
+        would && expects(self.tokens.get(main.end..frame.first).unwrap_or_default())
     }
 
     /// "that", "which", "who": the clause behind it is about the noun named last.

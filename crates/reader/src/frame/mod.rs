@@ -172,6 +172,7 @@ pub fn story(text: &str, own: Own<'_>) -> Story {
     hold_by_hand(&mut tokens);
     name_passenger_cars(&mut tokens);
     name_loose_boards(&mut tokens);
+    part_owners(&mut tokens);
     let sentences = crate::token::sentences(&tokens);
     let (mut standing, mut frames, mut world) = best(&tokens, &sentences, own);
     // "A gleeper struck it": who is meant is told by the record.
@@ -289,6 +290,39 @@ fn name_loose_boards(tokens: &mut [Token]) {
         "object".clone_into(&mut token.text);
     }
 }
+
+/// "The side of the trucks trailer", told of a truck: its apostrophe was lost.
+fn part_owners(tokens: &mut Vec<Token>) {
+    const OWNERS: [(&str, &str); 6] = [
+        ("trucks", "truck"),
+        ("tractors", "tractor"),
+        ("pickups", "pickup"),
+        ("vans", "van"),
+        ("suvs", "suv"),
+        ("cars", "car"),
+    ];
+    const OWNED: [&str; 3] = ["trailer", "cab", "bed"];
+    for at in (1..tokens.len().saturating_sub(1)).rev() {
+        let Some((_, one)) = OWNERS.iter().find(|(several, _)| tokens[at].text == *several) else { continue };
+        let before = &tokens[at.saturating_sub(OWNER_WORDS)..at];
+        let the = before.iter().rposition(|token| token.text == "the");
+        let many = |token: &Token| crate::token::number(&token.text).is_some() || token.text == "both";
+        let alone =
+            the.is_some_and(|the| !before[the..].iter().any(many)) && !before.iter().any(|token| token.text == "both");
+        let known = tokens[..at].iter().any(|token| token.text == *one);
+        if !(OWNED.contains(&tokens[at + 1].text.as_str()) && alone && known) {
+            continue;
+        }
+        let (start, end) = (tokens[at].end - 1, tokens[at].end);
+        (*one).clone_into(&mut tokens[at].text);
+        tokens[at].end = start;
+        let genitive = Token { start, end, text: "'s".to_owned(), kind: TokenKind::Word, capital: false };
+        tokens.insert(at + 1, genitive);
+    }
+}
+
+/// So many words before an owner may belong to its name: "the large red". [tokens]
+const OWNER_WORDS: usize = 4;
 
 /// "The passenger continued to reverse", told of a passenger car: its second word is left out.
 fn name_passenger_cars(tokens: &mut [Token]) {

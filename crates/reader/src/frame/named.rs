@@ -152,6 +152,7 @@ impl Parser<'_> {
         }
         let struck = self.waits_struck(all, at, carry).or_else(|| self.closes(all, at));
         let actor = struck.unwrap_or_else(|| self.not_itself(self.its(carry), carry));
+        let actor = self.not_who_stands(actor, all, at, carry);
         let mention = Mention { actor, piece: None, person: None, end: all[at].end };
         self.mention(mention, &all[at], carry, chunk(1));
         false

@@ -151,6 +151,7 @@ impl Parser<'_> {
             other => {
                 match other {
                     Chunk::Verb(sense, form) => self.verb(*sense, *form, all, at, carry),
+                    Chunk::Be if self.brings_on(all, at, carry) => {}
                     Chunk::Be => carry.be = true,
                     Chunk::Not => self.not(placed, carry),
                     Chunk::Relation(relation) => self.relation(*relation, placed, carry, next),

@@ -3,7 +3,7 @@
 use super::parser::{Carry, Parser};
 use super::row::transitive;
 use crate::chunk::{Chunk, Joint, Placed};
-use crate::lexicon::Sense;
+use crate::lexicon::{Form, Sense};
 use crate::world::{Actor, SUBJECT};
 use recrash_model::account::{Act, Kind};
 
@@ -73,6 +73,20 @@ impl Parser<'_> {
         };
         let waits = stands || from_a_stand;
         (carry.fresh && carry.joint == Some(Joint::While) && waits && struck).then_some(SUBJECT)
+    }
+
+    /// "It came up to a stopped van as it was riding between the lanes": who is called stopped does not ride; who came up does.
+    pub(super) fn not_who_stands(&self, actor: Actor, all: &[Placed], at: usize, carry: &Carry) -> Actor {
+        let moves =
+            |placed: &Placed| matches!(placed.chunk, Chunk::Verb(Sense::Act(Act::Follow | Act::Pass), Form::Ing));
+        let clause = carry.fresh && carry.joint == Some(Joint::While) && all[at + 1..].iter().take(2).any(moves);
+        let here = || self.frames.iter().rev().take_while(|frame| frame.sentence == self.sentence);
+        let called = here().find(|frame| frame.who == Some(actor));
+        if !clause || actor == SUBJECT || !called.is_some_and(|frame| frame.aside && frame.act() == Some(Act::Hold)) {
+            return actor;
+        }
+        let came = here().find(|frame| !frame.aside && frame.happened() && frame.who != Some(actor));
+        came.and_then(|frame| frame.who).unwrap_or(actor)
     }
 
     /// "approached a gate as it had started to close": what closes or comes down is the gate that was named before.

@@ -7,11 +7,11 @@ use super::row::{Spoken, single};
 use crate::chunk::Chunk;
 use crate::lexicon::{Form, Occupant, Sense};
 use crate::token::TokenKind;
-use recrash_model::account::Act;
+use recrash_model::account::{Act, Compass, LeftRight};
 
 type Rule = fn(&Parser<'_>, &Spoken<'_>, &Carry) -> Option<Sense>;
 
-const SENSES: [Rule; 16] = [
+const SENSES: [Rule; 17] = [
     stands_backed_up,
     remains_so,
     is_ridden,
@@ -28,6 +28,7 @@ const SENSES: [Rule; 16] = [
     stands_open,
     swings_over,
     moves_itself,
+    enters_a_slip_lane,
 ];
 
 impl Parser<'_> {
@@ -47,6 +48,30 @@ fn moves_itself(parser: &Parser<'_>, verb: &Spoken<'_>, carry: &Carry) -> Option
         parser.tokens[verb.placed().first..].iter().take(5).map(|token| token.text.as_str()).collect();
     let road = matches!(words.get(1..), Some(["forward", "into", "the" | "an", "intersection" | "junction"]));
     (verb.sense == Sense::Push && road && !carry.be).then_some(Sense::Act(Act::Follow))
+}
+
+/// "entered the slip lane toward northbound Elm Street": where traffic keeps right, a turn to the right. Of one that goes back the other way it
+/// is not.
+fn enters_a_slip_lane(parser: &Parser<'_>, verb: &Spoken<'_>, carry: &Carry) -> Option<Sense> {
+    if verb.sense != Sense::Act(Act::Enter) {
+        return None;
+    }
+    let behind = &parser.tokens[verb.placed().end..];
+    let clause = behind.iter().take(12).take_while(|token| token.text != "," && token.text != ".");
+    let words: Vec<&str> = clause.map(|token| token.text.as_str()).collect();
+    let slip = words.windows(2).take(3).any(|pair| pair == ["slip", "lane"]);
+    let own = carry.subject.as_ref().and_then(|subject| parser.world.actors[subject.actor].heading);
+    let back = own.is_some_and(|(compass, ..)| {
+        let other = match compass {
+            Compass::North => "south",
+            Compass::South => "north",
+            Compass::East => "west",
+            Compass::West => "east",
+            _ => return false,
+        };
+        words.iter().any(|word| word.starts_with(other))
+    });
+    (slip && !back).then_some(Sense::Sided(Act::Turn, LeftRight::Right))
 }
 
 /// "traffic was backed up" stands.

@@ -14,7 +14,8 @@ const WOULD_BEFORE: usize = 5;
 pub(super) fn apply(frames: &mut [Frame], tokens: &[Token], sentences: &[Sentence]) {
     for frame in frames {
         let sentence = sentences[frame.sentence];
-        if behind_if(&tokens[sentence.first..frame.first]) || behind_would_have(&tokens[sentence.first..frame.first]) {
+        let before = &tokens[sentence.first..frame.first];
+        if behind_if(before) || behind_would_have(before) || behind_expected(before) {
             frame.progress = Progress::Wished;
         }
     }
@@ -36,4 +37,16 @@ fn behind_would_have(before: &[Token]) -> bool {
     let near = &before[before.len().saturating_sub(WOULD_BEFORE)..];
     let have = near.iter().rposition(|token| token.text == "have");
     have.is_some_and(|have| near[..have].iter().any(|token| WOULD.contains(&token.text.as_str())))
+}
+
+/// "predicted that it would wait", and not all that stands behind it.
+fn behind_expected(before: &[Token]) -> bool {
+    before.last().is_some_and(|token| matches!(token.text.as_str(), "would" | "will" | "might")) && expects(before)
+}
+
+/// Whether these words tell what somebody expects of another: "predicted that the van".
+pub(super) fn expects(words: &[Token]) -> bool {
+    let stems = ["predict", "expect", "believ", "assum", "anticipat"];
+    let expects = |word: &str| stems.iter().any(|stem| word.starts_with(stem));
+    words.windows(2).any(|pair| expects(&pair[0].text) && pair[1].text == "that")
 }

@@ -179,9 +179,8 @@ impl Parser<'_> {
         if frame.act() == Some(Act::Drift) && frame.progress == Progress::Real && aims() {
             frame.progress = Progress::Tried;
         }
-        // "drove on before slowing to a stop": one after the other.
-        let stops = matches!(verb.sense, Sense::Act(Act::Stop | Act::Slow | Act::Hold));
-        let before = carry.joint == Some(Joint::Before) && carry.fresh && verb.form == Form::Ing && !stops;
+        // "drove on before slowing to a stop", "before yielding": one after the other.
+        let before = carry.joint == Some(Joint::Before) && carry.fresh && verb.form == Form::Ing && !waits;
         if before && frame.progress == Progress::Real {
             frame.progress = Progress::Wished;
         }

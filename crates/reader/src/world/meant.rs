@@ -70,7 +70,7 @@ impl World {
             return Some(self.occupant(noun, who, plain, hint));
         }
         if noun.subject {
-            return Some(SUBJECT);
+            return Some(self.standing_namesake(noun).unwrap_or(SUBJECT));
         }
         if let Some(known) = self.by_number(noun) {
             return Some(known);
@@ -83,6 +83,15 @@ impl World {
             Some(Meant::Known(actor)) => Some(actor),
             Some(Meant::New) | None => None,
         }
+    }
+
+    /// "The stopped AV", where another one of the name was told to stand, and this one passes it.
+    fn standing_namesake(&self, noun: &Noun) -> Option<Actor> {
+        let stands = |adjective: &Adjective| matches!(adjective, Adjective::Stopped | Adjective::Parked);
+        if noun.article != Article::Definite || noun.several || !noun.adjectives.iter().any(stands) {
+            return None;
+        }
+        self.latest(|known| known.namesake && known.parked && !known.several)
     }
 
     /// "Vehicle 2".

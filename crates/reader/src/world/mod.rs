@@ -31,6 +31,8 @@ pub struct Known {
     pub another: bool,
     /// It was brought on as the second.
     pub second: bool,
+    /// It was brought on as another one with a name of the subject vehicle.
+    pub namesake: bool,
     /// More than one.
     pub several: bool,
     /// The headline named it, and the story has not yet.
@@ -247,7 +249,8 @@ impl World {
 
     fn add(&mut self, noun: &Noun) -> Actor {
         let another = noun.adjectives.contains(&Adjective::Another);
-        self.actors.push(Known { several: noun.several, another, second: noun.second, ..Known::default() });
+        let (several, second, namesake) = (noun.several, noun.second, noun.namesake);
+        self.actors.push(Known { several, another, second, namesake, ..Known::default() });
         self.actors.len() - 1
     }
 

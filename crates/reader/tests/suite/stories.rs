@@ -86,6 +86,34 @@ fn the_words_of_an_entry_name_the_intersection() {
 }
 
 #[test]
+fn the_words_of_an_opening_name_the_door() {
+    let door = |text: &str| match account_of(text).expect("an account").door.expect("a door").source {
+        Source::Words { text, .. } => text,
+        other => panic!("{other:?}"),
+    };
+    let before = "The AV was parked on Elm Street when a passenger of the AV";
+    let hit = "and a cyclist hit the door";
+    assert_eq!(
+        door(&format!("{before} opened the front passenger side door, {hit}.")),
+        "opened the front passenger side door"
+    );
+    let of_van =
+        "The AV passed a parked van when the rear left door of the van opened and hit the right side of the AV.";
+    assert_eq!(door(of_van), "rear left door of the van opened");
+    let bare = "The AV passed a parked van when its driver opened a door and hit the right side of the AV.";
+    assert!(door(bare).starts_with("opened"), "{}", door(bare));
+}
+
+#[test]
+fn what_was_not_completed_was_begun() {
+    let text = "The AV attempted a right lane change but was unable to complete the lane change. It braked, and its front hit the rear of a \
+                pickup ahead.";
+    let acts = account_of(text).expect("an account").sv.acts;
+    let change = acts.iter().find(|fact| fact.act == Act::LaneChange).expect("a lane change");
+    assert!(change.begun && !change.done, "{change:?}");
+}
+
+#[test]
 fn a_turn_lane_is_gone_over_to_where_the_column_says_so() {
     let text = "The AV was traveling in the rightmost lane. While the AV proceeded into the right turn lane, an SUV approached the AV \
                 from behind, and the front of the SUV made contact with the rear of the AV.";
@@ -200,4 +228,13 @@ fn who_goes_backwards_across_the_way_of_one_that_drives_into_it_is_there_first()
                 and the front right of the AV made contact with the rear of the dump truck.";
     let account = facts(&common::account_of(text).expect("an account"));
     assert_eq!((account["crash_type"].as_str(), account["order"].as_str()), ("backing", "cp"), "{account:?}");
+}
+
+/// Where nobody tells the touch, acts of one sentence still come behind those of the one before.
+#[test]
+fn without_a_told_touch_one_sentence_comes_behind_the_other() {
+    let text =
+        "The AV stopped on Elm Street. A hatchback turned left and crossed the lane of the AV. There were no injuries.";
+    let acts = account_of(text).expect("an account").partner.expect("a partner").acts;
+    assert!(acts[0].after_other.is_some(), "{acts:?}");
 }

@@ -198,11 +198,23 @@ fn of_thing(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
     zone_side(account).map(|side| Fact::by_rule(Origin::Beside { side }, "the side that the thing touches"))
 }
 
+/// Whether somebody is told to go the other way: its lanes are others.
+pub(super) fn comes_against(clues: &Clues<'_>) -> bool {
+    let actors = &clues.reading.story.world.actors;
+    let heading = |actor: Actor| actors[actor].heading.map(|(compass, ..)| compass);
+    let turn = heading(SUBJECT).zip(heading(clues.actor)).map(|(own, other)| own.eighths_to(other));
+    matches!(turn, Some(3..=5))
+}
+
 /// The side on which the vehicle drives that lost a thing: the only other one that is told of.
 fn came_off(clues: &Clues<'_>, account: &Account) -> Option<LeftRight> {
     let actors = || clues.reading.story.world.actors.iter().enumerate().skip(1);
     let vehicle = |kind: Option<Kind>| kind.is_some_and(Kind::is_vehicle);
     let mut others = actors().filter(|(actor, known)| *actor != clues.actor && vehicle(known.kind));
+    // Off one that comes the other way: over from the lanes on the left.
+    if actors().any(|(actor, known)| vehicle(known.kind) && comes_against(&Clues { reading: clues.reading, actor })) {
+        return Some(LeftRight::Left);
+    }
     let (only, more) = (others.next(), others.next());
     let (lane, ..) = only.filter(|_| more.is_none())?.1.lane?;
     side_of_lane(account.sv.lane.as_ref()?.value, lane)

@@ -493,10 +493,18 @@ impl<'a> Case<'a> {
             self.first,
             Some(Relation::Left | Relation::Right | Relation::Ahead | Relation::Opposite | Relation::Beside)
         );
-        if !self.behind || elsewhere {
+        if !self.behind || elsewhere || self.turns_behind() {
             return None;
         }
         told_as(Origin::Behind, self.clues.has(Relation::Behind))
+    }
+
+    /// "An oncoming van turned behind it": that is where it went, of who is told to go another way.
+    fn turns_behind(&self) -> bool {
+        let behind = |frame: &Frame| frame.relations.iter().any(|(relation, _)| *relation == Relation::Behind);
+        let turns = |frame: &Frame| matches!(frame.act(), Some(Act::Turn | Act::UTurn | Act::Cross));
+        let mut told = self.frames().filter(|(_, frame)| behind(frame)).peekable();
+        matches!(self.turn, Some(2..=6)) && told.peek().is_some() && told.all(|(_, frame)| turns(frame))
     }
 
     /// Beside it, before it passes or changes lanes: on the side of its lane, else the one that was touched.
