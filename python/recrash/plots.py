@@ -32,6 +32,7 @@ COLOURS = {
     "passed": "#009E73",
     "failed": "#D55E00",
     "error": "#000000",
+    "unmet": "#CCCCCC",
 }
 #: What all plots share: sizes of a column of a paper, and letters that stay letters in a PDF.
 STYLE = {
@@ -250,14 +251,23 @@ def results(table: Table | Mapping[str, Sequence[Any]], *, axes: Sequence[Any] |
     return axes
 
 
+def _suite_verdict(case: Mapping[str, Any], last: Mapping[str, Any] | None) -> str:
+    """What the last run of a case says: a run that never came into the situation of its record and did not fail is no pass."""
+    if last is None:
+        return "error"
+    if last["failed"]:
+        return "failed"
+    return "unmet" if case.get("situation_met") is False else "passed"
+
+
 def suite(suite: Suite) -> Any:
     """Draw a suite as it was run: verdicts by crash type (or template), and least gaps. Gives the figure."""
     summary = suite.summary
     cases = summary["cases"]
     last = [case.get("tuned") or case.get("first") for case in cases]
     names = [_case_type(case) for case in cases]
-    verdicts = ["error" if each is None else "failed" if each["failed"] else "passed" for each in last]
-    words = {"passed": "passed", "failed": "failed", "error": "nothing to test"}
+    verdicts = [_suite_verdict(case, each) for case, each in zip(cases, last, strict=True)]
+    words = {"passed": "passed", "failed": "failed", "unmet": "never in the situation", "error": "nothing to test"}
     order = [each for each, _ in Counter(names).most_common()][::-1]
     counts = Counter(zip(names, verdicts, strict=True))
     with matplotlib.rc_context(STYLE):
