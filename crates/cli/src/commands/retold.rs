@@ -212,8 +212,11 @@ fn result(summary: &Summary) {
     };
     let causes = summary.causes();
     if !causes.is_empty() {
+        // Here all count, also those outside the situation.
+        let of_all = also(", of all ", causes.iter().map(|(_, count)| count).sum(), "failures");
+        let of_all = if outside > 0 { of_all } else { String::new() };
         let causes = causes.iter().map(|(cause, count)| (cause.label(), *count)).collect();
-        sentence(&format!("after tuning, by cause: {}", listed(causes)));
+        sentence(&format!("after tuning, by cause{of_all}: {}", listed(causes)));
         let classes = summary.failure_classes().into_iter().map(|(class, count)| (class.label(), count)).collect();
         sentence(&format!("  other egos in the same scenario: {}", listed(classes)));
         let brackets = summary.brackets().into_iter().map(|(bracket, count)| (bracket.label(), count)).collect();
