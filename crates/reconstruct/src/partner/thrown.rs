@@ -157,9 +157,10 @@ pub(super) fn nudger(told: &Told, staging: &Staging, own: OwnWay) -> Actor {
     actor(ActorPlan { speed_mps, course, ..ActorPlan::standing(from) })
 }
 
-/// Who drives ahead of the ego is looked for so far ahead of it; the partner has not touched it so long before. [m, s]
-const AHEAD_M: f64 = 40.0;
-const BEFORE_S: f64 = 3.0;
+/// Who drives ahead of the ego is looked for so far ahead of it at most; the partner has not touched it so long before, looked at in such
+/// steps. [m, s, s]
+const AHEAD_M: f64 = 16.0;
+const BEFORE_S: f64 = 1.2;
 const TICK_S: f64 = 0.05;
 
 /// Who drives ahead in the ego's lane, as fast as that, and is touched by the partner on its way right before the contact.
