@@ -6,7 +6,8 @@ use crate::pace::lead::before;
 use crate::pace::plain::{Pace, first_time, time_before, when};
 use crate::told::aside::Aside;
 use crate::told::crash::Told;
-use crate::usual::beyond_m;
+use crate::told::side::size_of;
+use crate::usual::{LANE_M, beyond_m};
 use recrash_model::account::ContactState;
 use recrash_model::geometry::{Pose, Vec2};
 use recrash_model::rollout::{ActorState, STEP_S};
@@ -86,14 +87,50 @@ fn shift(told: &Told, aside: Aside, pace: &Pace, least_m: f64) -> Act {
         let braking_m = pace.driven_m - pace.speed_mps * brakes_s;
         let half_m = (braking_m + pace.speed_mps * ROLLS_S).min(pace.driven_m);
         (half_m, (brakes_s - ROLLS_S).max(0.0))
+    } else if half_m < pace.driven_m && drives && told.keeps_lane_beside(aside) {
+        let done_m = share_done(told, aside, 2.0 * half_m) * 2.0 * half_m;
+        (half_m, time_before(contact_s, pace, done_m))
     } else if half_m < pace.driven_m && (least_m > 0.0 || drives && contact_s * speed_mps < half_m) {
         (half_m, time_before(contact_s, pace, half_m))
     } else if half_m < pace.driven_m && drives {
         (half_m, contact_s - half_m / speed_mps)
     } else {
-        (pace.driven_m.max(1.0), first_time(&pace.acts))
+        let driven_m = pace.driven_m.max(1.0);
+        (0.5 * over_from_stand(told, aside, driven_m), first_time(&pace.acts))
     };
     when((from_s * 10.0).round() / 10.0, Deed::Shift { to_t_m: aside.to_t_m, over_m: 2.0 * half_m })
+}
+
+/// What is done of a move into the next lane is looked for in such steps, and is half of its way at most; the ego has come out of its line by
+/// so much at least. [-, m]
+const SHARES: u32 = 50;
+const LEAST_OUT_M: f64 = 1.2;
+
+/// Whether the corner of an ego that has done such a share of its move into the lane of a partner which keeps the middle of that comes to the
+/// other's flank.
+fn comes_to_flank(told: &Told, aside: Aside, (share, over_m): (f64, f64)) -> bool {
+    let ((length_m, width_m), (_, other_m)) = (size_of(&told.sv), size_of(&told.cp));
+    let by_m = (aside.to_t_m - aside.from_t_m).abs();
+    let arm_m = recrash_roads::arm_m(told.sv.kind, length_m);
+    let left = 1.0 - share;
+    let done_m = by_m * share * share * share * (10.0 - 15.0 * share + 6.0 * share * share);
+    let slope = by_m / over_m * 30.0 * share * share * left * left;
+    let middle_m = done_m + slope * arm_m;
+    middle_m >= LEAST_OUT_M && middle_m + 0.5 * (slope * length_m + width_m + other_m) >= LANE_M
+}
+
+/// The share of its move that such an ego has done as they touch.
+fn share_done(told: &Told, aside: Aside, over_m: f64) -> f64 {
+    let shares = (1..=SHARES).map(|step| 0.5 * f64::from(step) / f64::from(SHARES));
+    shares.into_iter().find(|share| comes_to_flank(told, aside, (*share, over_m))).unwrap_or(0.5)
+}
+
+/// On how much of its way an ego makes its move that drives no farther from a stand until they touch. [m]
+fn over_from_stand(told: &Told, aside: Aside, driven_m: f64) -> f64 {
+    let shares = (1..=SHARES).map(|step| 0.5 * f64::from(step) / f64::from(SHARES));
+    let mut ways = shares.map(|share| (share, driven_m / share));
+    let found = ways.find(|way| told.keeps_lane_beside(aside) && comes_to_flank(told, aside, *way));
+    found.map_or(2.0 * driven_m, |(_, over_m)| over_m)
 }
 
 /// Who parks at the kerb comes along its lane, and leaves it on so much of its way; it is at the kerb so far before it stands. [m]

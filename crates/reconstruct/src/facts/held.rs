@@ -186,7 +186,8 @@ pub(crate) fn facts(told: &Told, scenario: &Scenario, rollout: &Rollout) -> Vec<
     for (kind, side, track, other, met) in ways {
         let road_rad = ego_track.states[0].heading;
         let keeps_lane = kind == CheckKind::CpMovement && told.keeps_its_lane();
-        let way = Way { scenario, track, other, met, time_s: touch.time_s, keeps_lane, road_rad };
+        let parks_at_kerb = kind == CheckKind::CpMovement && told.parks_behind();
+        let way = Way { scenario, track, other, met, time_s: touch.time_s, keeps_lane, road_rad, parks_at_kerb };
         let slides =
             kind == CheckKind::CpMovement && keeping::slides(track.kind, until_touched(rollout, track, touch.time_s));
         let check = movement::check(side, &way);

@@ -106,6 +106,10 @@ const OVER_M: f64 = 0.5 * LANE_M;
 const BACK_RAD: f64 = 0.35;
 const ASKEW_RAD: f64 = 0.09;
 
+/// Who is told to drive straight on, or to pass, so far beside the ego at least, goes no farther out of its way. [m]
+const BESIDE_M: f64 = 1.0;
+const AWAY_M: f64 = 1.0;
+
 /// What nobody would take for driving straight on is worse than a step from the told zones. [half seconds]
 pub(crate) const ABSURD: usize = 4;
 
@@ -153,6 +157,21 @@ pub(super) fn leaves_whom_it_passes(told: &Told, ego: &ActorTrack, track: &Actor
     let along = Vec2::from_heading(other.heading);
     let away_mps = along.cross(met.velocity()) * along.cross(met.position() - other.position()).signum();
     told.passes_from_behind() && beside && away_mps > 0.0
+}
+
+/// Whether somebody that is told to drive straight on beside the ego, or by it, goes out of that one's way before they touch.
+pub(super) fn goes_out_of_way(told: &Told, ego: &ActorTrack, track: &ActorTrack, contact_s: f64) -> bool {
+    let stays = !told.leaves_its_lane() || told.comes_straight_by() || told.passes_in_own_lane();
+    if !told.comes_along_lanes() || told.cp.turning != Turning::No || told.is_thrown() || !stays {
+        return false;
+    }
+    let until = ((contact_s / STEP_S) as usize).min(track.states.len() - 1);
+    let (first, own) = (&track.states[0], &ego.states[0]);
+    let along = Vec2::from_heading(first.heading);
+    let left_m = |of: Vec2| along.cross(of - first.position());
+    let from_m = left_m(own.position());
+    let away_m = |state: &ActorState| -from_m.signum() * left_m(state.position());
+    from_m.abs() > BESIDE_M && track.states[..=until].iter().any(|state| away_m(state) > AWAY_M)
 }
 
 /// What somebody feels sideways at most; it turns by no more than the second and what its circle or that allows in a step, nor by the third,

@@ -74,6 +74,7 @@ pub(super) fn lane(
         _ if matches!(road.part, RoadPart::Beside(_)) => false,
         LaneWord::Left if ego.id == track.id && told.layout.turn_lane => number == 1,
         LaneWord::Left => number == 0,
+        LaneWord::Right if told.layout.right_lane => number + 1 == last,
         LaneWord::Right => number == last,
         LaneWord::LeftTurn => number < turn_lanes,
         LaneWord::RightTurn => number + turn_lanes > last,

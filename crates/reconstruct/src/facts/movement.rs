@@ -49,6 +49,8 @@ pub(super) struct Way<'a> {
     pub(crate) keeps_lane: bool,
     /// Direction of the road that the ego came along. [rad]
     pub(crate) road_rad: f64,
+    /// It parks behind one that stands at the kerb.
+    pub(crate) parks_at_kerb: bool,
 }
 
 impl Way<'_> {
@@ -108,9 +110,10 @@ impl Way<'_> {
         is_against(self.scenario, &self.until()[self.until().len() - 1])
     }
 
-    fn starts_off_lanes(&self) -> bool {
-        let (first, network) = (&self.track.states[0], self.scenario.network());
-        let lane = network.lane_at(first.position(), first.heading);
+    /// Whether somebody is in no driving lane.
+    fn is_off_lanes(&self, state: &ActorState) -> bool {
+        let network = self.scenario.network();
+        let lane = network.lane_at(state.position(), state.heading);
         lane.is_none_or(|lane| matches!(network.road(network.lane(lane).road).part, RoadPart::Beside(_)))
     }
 }
@@ -179,7 +182,7 @@ pub(super) fn check(side: &Side, way: &Way<'_>) -> Option<(String, CheckResult, 
         }
         Movement::EnteringTraffic => {
             let (words, degrees) = bent();
-            let out = way.starts_off_lanes() || way.stood();
+            let out = way.is_off_lanes(&way.track.states[0]) || way.stood();
             (
                 out && (beside_m.abs() >= LEFT_LINE_M || degrees >= BENDS_DEG),
                 format!("{words}, {:.1} m aside", beside_m.abs()),
@@ -192,7 +195,8 @@ pub(super) fn check(side: &Side, way: &Way<'_>) -> Option<(String, CheckResult, 
             let (words, degrees) = bent();
             let slow = way.until()[way.until().len() - 1].velocity().length() < PARKS_MPS;
             let turns = way.reversed() || beside_m.abs() >= LEFT_LINE_M || degrees >= BENDS_DEG;
-            (slow && turns, format!("{words}, {:.1} m aside", beside_m.abs()))
+            let there = !way.parks_at_kerb || way.is_off_lanes(&way.until()[way.until().len() - 1]);
+            (slow && turns && there, format!("{words}, {:.1} m aside", beside_m.abs()))
         }
         Movement::WrongWay => match way.against() {
             None => return Some((word(side), CheckResult::CannotBeShown, "on no lane".to_owned())),

@@ -39,7 +39,7 @@ pub(crate) fn strays(told: &Told, scenario: &Scenario, rollout: &Rollout) -> boo
     }
     let Some(track) = touch.track else { return false };
     let until = ((touch.time_s * 10.0) as usize).min(track.states.len() - 1);
-    if told.comes_along_kerb() && comes_from_strip(scenario, track, until) {
+    if told.comes_along_kerb() && !told.parks_behind() && comes_from_strip(scenario, track, until) {
         return true;
     }
     // Every second.
@@ -88,6 +88,7 @@ pub(crate) fn off_its_way(told: &Told, scenario: &Scenario, rollout: &Rollout) -
     let weaves = |(track, time_s)| {
         keeping::weaves(told, track, time_s)
             + usize::from(keeping::leaves_whom_it_passes(told, ego, track, time_s))
+            + if keeping::goes_out_of_way(told, ego, track, time_s) { ABSURD } else { 0 }
             + if told.is_beside_line(ego, track) || told.is_far_beside(ego, track) { ABSURD } else { 0 }
     };
     (2.0 * off_s) as usize + touch.map_or(0, weaves)

@@ -23,10 +23,13 @@ pub(super) fn comes_as_told(told: &Told, ego: &ActorTrack, [partner, other]: [&A
         let sign = if side == LeftRight::Left { 1.0 } else { -1.0 };
         left_m.iter().any(|left_m| sign * left_m > ASIDE * LANE_M)
     };
+    let way = other.states[step.min(other.states.len() - 1)].position() - of_ego;
+    let is_ahead = road.dot(way) > 0.0 && road.cross(way).abs() < 0.5 * LANE_M;
     let turned = math::wrap_angle(other.states[0].heading - ego.states[0].heading).abs();
     match told.thrower {
         None => true,
         Some(Thrower::Beside(side)) => on_side(side),
+        Some(Thrower::Ahead) => is_ahead && turned < CROSSES_RAD.0,
         Some(Thrower::Cross(side)) => on_side(side) && (CROSSES_RAD.0..CROSSES_RAD.1).contains(&turned),
     }
 }

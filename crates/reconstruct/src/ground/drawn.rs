@@ -16,7 +16,7 @@ use recrash_model::template::Movement;
 
 /// The road for an account.
 pub(crate) fn ground_for(told: &Told) -> Ground {
-    let crossing = matches!(told.origin, Origin::Cross { .. }) && !told.crosses_street()
+    let crossing = matches!(told.origin, Origin::Cross { .. }) && !told.crosses_street() && !told.backs_across()
         || told.sv.turning != Turning::No && told.sv.turning != Turning::Round
         || told.cp.turning != Turning::No;
     // Aisles cross where somebody turns.

@@ -11,6 +11,7 @@ use crate::usual::{LANE_M, LEAD_GAP_M, ROOM_M};
 use recrash_model::account::{ContactState, LeftRight, Origin};
 use recrash_model::kinds::PartnerKind;
 use recrash_model::scenario::{GraphMap, JunctionSpec, RoadStart, StripKind};
+use recrash_model::template::Movement;
 use recrash_model::vehicle::VehicleSpec;
 
 /// Places of who has yet to turn, from where the junction begins. [m]
@@ -63,6 +64,9 @@ fn over_line_m(told: &Told) -> f64 {
 
 /// Places of who goes straight on and is told to be in the junction, where nobody crosses it or turns. [m]
 const INSIDE_M: [f64; 3] = [2.5, 7.0, 12.0];
+
+/// The same of who has come through it, from where it ends. [m]
+const BEYOND_M: [f64; 3] = [4.0, 10.0, 2.0];
 
 /// Four arms; the ego comes along the one that lies behind it.
 pub(super) fn junction(told: &Told, crossing: bool) -> Ground {
@@ -140,7 +144,14 @@ pub(super) fn junction(told: &Told, crossing: bool) -> Ground {
         if told.sv.turns_later {
             all.extend(inside(&BEFORE_TURN_M));
         }
-        all.extend(if waits && told.sv.turning == Turning::Right {
+        all.extend(if told.turns_as_ego() {
+            // Farther in it, who follows has begun it too.
+            inside(if waits {
+                &[9.0, 8.0, 6.0, 10.0, 14.0, 3.0, 18.0, 22.0, 28.0]
+            } else {
+                &[14.0, 10.0, 6.0, 18.0, 3.0, 22.0, 28.0]
+            })
+        } else if waits && told.sv.turning == Turning::Right {
             // It has begun to turn.
             inside(&[6.0, 10.0, 14.0, 3.0, 18.0, 22.0, 28.0])
         } else if told.goes_straight_behind() {
@@ -166,6 +177,7 @@ pub(super) fn junction(told: &Told, crossing: bool) -> Ground {
         };
         let before_m = if at_kerb { KERB_BEFORE_M } else { before_m };
         match (told.enters() || told.is_followed_in()) && !at_kerb && told.edge.is_none() {
+            true if told.sv.crossed => inside(&BEYOND_M.map(|beyond_m| 2.0 * corner_m + beyond_m)),
             true => inside(&INSIDE_M),
             // From its line.
             false if told.sets_off_first() && before_m < USUAL_M => vec![APPROACH_M - over_line_m(told)],
@@ -181,6 +193,16 @@ pub(super) fn junction(told: &Told, crossing: bool) -> Ground {
 }
 
 impl Told {
+    /// Whether the partner runs into the rear of an ego that has begun its turn, and is told to make the same.
+    fn turns_as_ego(&self) -> bool {
+        let same = match self.sv.turning {
+            Turning::Left => Movement::LeftTurn,
+            Turning::Right => Movement::RightTurn,
+            Turning::No | Turning::Round => return false,
+        };
+        self.origin == Origin::Behind && !self.sv.turns_later && self.cp.turns_later && self.cp.movement == Some(same)
+    }
+
     /// Whether the partner turns out of a crossing road into the ego's, the ego's way.
     fn turns_into_own_road(&self) -> bool {
         let side = match self.cp.turning {

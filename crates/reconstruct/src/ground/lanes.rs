@@ -40,7 +40,7 @@ pub(super) fn lanes_for(told: &Told, usual: usize) -> usize {
         Some(LaneWord::Left | LaneWord::Right | LaneWord::LeftTurn | LaneWord::RightTurn) => 2,
         _ => 1,
     });
-    let more = usize::from(told.more_lanes) + usize::from(told.layout.turn_lane);
+    let more = usize::from(told.more_lanes) + usize::from(told.layout.turn_lane || told.layout.right_lane);
     let lanes = told.lanes.map_or(usual, usize::from).max(needed.max().unwrap_or(1)) + more;
     lanes.clamp(1, MOST_LANES)
 }
@@ -105,7 +105,9 @@ fn passes_right(told: &Told) -> bool {
     let moves = told.cp.state == ContactState::Moving;
     let passes = told.cp.movement == Some(Movement::Passing) && side_of(&told.sv.zones) == Some(-1.0)
         || told.cp.passes_on() == Some(LeftRight::Right);
-    let by = moves && told.sv.zones.iter().any(touched) || passes;
+    let goes = matches!(told.cp.movement, Some(Movement::ChangingLanes | Movement::Merging | Movement::Passing));
+    let goes = goes && moves && told.cp.aside == Some(LeftRight::Right) && !told.is_at_kerb();
+    let by = moves && told.sv.zones.iter().any(touched) || passes || goes;
     in_lane && matches!(told.origin, Origin::Beside { side: LeftRight::Right })
         || in_lane && told.origin == Origin::Behind && by
 }

@@ -1,10 +1,11 @@
 //! Those beside the ego's way: parked, in the next lane, or gone round.
 
+use crate::others::crossing::WALKER_GAP_M;
 use crate::others::scene::{BESIDE_M, PARKED_AHEAD_M, ROUND_AHEAD_M, Scene};
-use crate::told::others::Extra;
+use crate::told::others::{Extra, Role};
 use crate::told::side::size_of;
 use crate::usual::{LANE_M, LEAD_GAP_M, ROOM_M};
-use recrash_model::account::{LeftRight, Origin};
+use recrash_model::account::{ContactState, LeftRight, Origin};
 use recrash_model::geometry::Vec2;
 use recrash_model::math;
 use recrash_model::rollout::ActorTrack;
@@ -46,8 +47,11 @@ impl Scene<'_> {
             (LeftRight::Left, has(left), -left_m, if two_way && !stalls { 180.0 } else { turned_deg }),
         ];
         let told = |side: LeftRight| extra.side.is_none_or(|told| told == side);
-        let plan = |(_, _, t_m, turned_deg): (LeftRight, bool, f64, f64)| {
+        let plan = |(side, _, t_m, turned_deg): (LeftRight, bool, f64, f64)| {
             let hides_m = self.hides_m(t_m, length_m).filter(|_| turned_deg != 90.0);
+            let walks_m = self.walks_across_m(side).filter(|_| turned_deg != 90.0);
+            let hides_m = hides_m.or(walks_m.map(|at_m| at_m - HIDES_M - 0.5 * length_m));
+            let hides_m = hides_m.or_else(|| self.passes_between(side));
             let pose = self.ground.pose(hides_m.unwrap_or(ahead_m).min(before_m), t_m);
             ActorPlan::standing(Place::at(pose.position.x, pose.position.y, pose.heading.to_degrees() + turned_deg))
         };
@@ -86,7 +90,35 @@ impl Scene<'_> {
             let turned = math::wrap_angle(track.states[step].heading - self.ground.pose(s_m, 0.0).heading);
             (at(step - 1).1 - t_m) * (now_m - t_m) <= 0.0 && math::sin(turned).abs() > ACROSS
         };
-        (1..=last).find(|step| across(*step)).map(|step| at(step).0)
+        let crossed = (1..=last).find(|step| across(*step)).map(|step| at(step).0);
+        // Its front is over the line: it stands short of where that came nearest.
+        let near = |step: &usize| (at(*step).1 - t_m).abs() < track.length_m;
+        let nearest = || (0..=last).filter(near).map(|step| at(step).0).fold(f64::INFINITY, f64::min);
+        let over = |step: usize| (at(step).1 - t_m).abs() < 0.5 * track.length_m && self.is_across(track, step);
+        crossed.or_else(|| over(last).then(nearest))
+    }
+
+    /// Whether somebody is at a wide angle to the ego's way.
+    fn is_across(&self, track: &ActorTrack, step: usize) -> bool {
+        let (s_m, _) = self.ground.beside(track.states[step].position());
+        let turned = math::wrap_angle(track.states[step].heading - self.ground.pose(s_m, 0.0).heading);
+        math::sin(turned).abs() > ACROSS
+    }
+
+    /// Where the ego is as it passes between one that is parked on this side and a partner that backs from the other. [m]
+    fn passes_between(&self, side: LeftRight) -> Option<f64> {
+        let other = self.told.comes_from_side() == Some(side.other());
+        let drives = self.told.sv.state == ContactState::Moving;
+        (other && drives && self.told.backs_across()).then(|| self.at(self.until).0)
+    }
+
+    /// Where somebody on foot, or an animal, that is one of the others crosses ahead of the ego, from this side. [m]
+    fn walks_across_m(&self, side: LeftRight) -> Option<f64> {
+        let crosses = |extra: &&Extra| matches!(extra.role, Role::Walker | Role::Animal) && !extra.stays;
+        let walker = self.told.extras.iter().find(crosses)?;
+        let (step, room_m) = self.stops();
+        let from = walker.side.unwrap_or(LeftRight::Right);
+        (from == side).then(|| self.at(step).0 + self.front_m() + room_m + WALKER_GAP_M)
     }
 
     /// Who hides a partner that comes across stands short of where that comes out. [m]

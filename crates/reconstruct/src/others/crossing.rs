@@ -12,7 +12,7 @@ use recrash_model::math;
 use recrash_model::scenario::{ActorPlan, Deed, Leg, Place, StripKind};
 
 /// From the ego's front to who crosses, on foot or not; and to who is on foot between it and one that stands ahead. [m]
-const WALKER_GAP_M: f64 = 3.0;
+pub(super) const WALKER_GAP_M: f64 = 3.0;
 const CROSSER_GAP_M: f64 = 2.0;
 const WALKER_BETWEEN_M: f64 = 0.5 * LEAD_GAP_M;
 

@@ -3,6 +3,7 @@
 use crate::others::scene::{BESIDE_M, BRAKES_MPS2, MET_BEFORE_S, ROOM_BESIDE_M, ROUND_AHEAD_M, Scene};
 use crate::others::stand::{stands, stood_behind};
 use crate::pace::plain::{first_time, next, when};
+use crate::told::doing::Doing;
 use crate::told::others::{Extra, Role};
 use crate::told::queue::{leaves_lane, waits_ahead};
 use crate::told::side::{Turning, size_of};
@@ -157,7 +158,9 @@ impl Scene<'_> {
         // In the lane that the ego leaves to make room.
         let t_m = self.told.sv_aside().map_or(t_m, |aside| aside.from_t_m);
         let speed_mps = self.mps(self.until).max(MERGES_MPS);
-        let met_m = s_m + self.front_m() + self.stops().1 + 0.5 * length_m + ROUND_AHEAD_M;
+        let slows = self.told.sv.state.stands() || self.told.sv.acts.iter().any(Doing::slows);
+        let room_m = if slows { self.stops().1 } else { 0.0 };
+        let met_m = s_m + self.front_m() + room_m + 0.5 * length_m + ROUND_AHEAD_M;
         let leftmost = matches!(self.told.sv.lane, Some(LaneWord::Left | LaneWord::LeftTurn));
         let usual = if leftmost { LeftRight::Right } else { LeftRight::Left };
         let from_m = if extra.side.unwrap_or(usual) == LeftRight::Right { LANE_M } else { -LANE_M };

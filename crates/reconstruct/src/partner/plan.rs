@@ -6,6 +6,7 @@ use crate::partner::pace::partner_paces;
 use crate::partner::{lateral, thrown, turns};
 use crate::told::crash::Told;
 use crate::told::lies::Lies;
+use crate::told::others::Thrower;
 use crate::told::rig::Rig;
 use crate::told::side::size_of;
 use crate::touch::staging::Staging;
@@ -52,8 +53,11 @@ pub(crate) fn partner(told: &Told, staging: &Staging) -> (Vec<Actor>, Vec<Object
     if stands {
         return (actors, Vec::new());
     }
-    let toucher =
-        || if told.pusher_stands { thrown::grazed(told, staging) } else { thrown::nudger(told, staging, own) };
+    let toucher = || match told.thrower {
+        _ if told.pusher_stands => thrown::grazed(told, staging),
+        Some(Thrower::Ahead) => thrown::ahead(told, staging).unwrap_or_else(|| thrown::nudger(told, staging, own)),
+        _ => thrown::nudger(told, staging, own),
+    };
     actors.extend((told.pushed && told.thing.is_none()).then(toucher));
     (actors, Vec::new())
 }

@@ -157,6 +157,41 @@ pub(super) fn nudger(told: &Told, staging: &Staging, own: OwnWay) -> Actor {
     actor(ActorPlan { speed_mps, course, ..ActorPlan::standing(from) })
 }
 
+/// Who drives ahead of the ego is looked for so far ahead of it at most; the partner has not touched it so long before, looked at in such
+/// steps. [m, s, s]
+const AHEAD_M: f64 = 16.0;
+const BEFORE_S: f64 = 1.2;
+const TICK_S: f64 = 0.05;
+
+/// Who drives ahead in the ego's lane, as fast as that, and is touched by the partner on its way right before the contact.
+pub(super) fn ahead(told: &Told, staging: &Staging) -> Option<Actor> {
+    let (kind, size, length_m) = pusher(told);
+    let width_m = size.map_or(VehicleSpec::of(kind).width_m, |size| size.width_m);
+    let (partner_m, wide_m) = size_of(&told.cp);
+    let (road, speed_mps) = (Vec2::from_heading(staging.sv.heading), told.sv.speed_mps);
+    let way = Vec2::from_heading(staging.cp.heading) * told.cp.speed_mps;
+    let back = |pose: Pose, mps: Vec2, before_s: f64| Pose { position: pose.position - mps * before_s, ..pose };
+    // Where it would be at the contact.
+    let there = |ahead_m: f64| Pose { position: staging.sv.position + road * ahead_m, ..staging.sv };
+    let touched_s = |ahead_m: f64| {
+        let ticks = (0..=(BEFORE_S / TICK_S) as usize).rev().map(|tick| TICK_S * tick as f64);
+        ticks.into_iter().find(|before_s| {
+            let other = OrientedBox::new(back(there(ahead_m), road * speed_mps, *before_s), length_m, width_m);
+            other.overlaps(&OrientedBox::new(back(staging.cp, way, *before_s), partner_m, wide_m))
+        })
+    };
+    // The farthest of those: its corner is grazed.
+    let steps = (0..(AHEAD_M / GRAZES_M) as usize).rev().map(|step| GRAZES_M * step as f64);
+    let found = steps.filter_map(|ahead_m| Some((ahead_m, touched_s(ahead_m).filter(|before_s| *before_s > 0.0)?)));
+    let off_s = |(_, before_s): &(f64, f64)| (before_s - THROW_S).abs();
+    let (ahead_m, _) = found.min_by(|one, other| off_s(one).total_cmp(&off_s(other)))?;
+    let start = back(there(ahead_m), road * speed_mps, told.contact_s);
+    let to = Pose { position: there(ahead_m).position + road * beyond_m(speed_mps), ..start };
+    let course = if speed_mps > 0.0 { vec![Leg::Curve { to: at(to), reverse: false }] } else { Vec::new() };
+    let plan = ActorPlan { speed_mps, course, ..ActorPlan::standing(at(start)) };
+    Some(Actor { id: "pusher".to_owned(), kind, size, mass_kg: None, parts: Vec::new(), plan })
+}
+
 /// Who stands at the kerb, and whom the partner grazes on its way, on the side away from the ego.
 pub(super) fn grazed(told: &Told, staging: &Staging) -> Actor {
     let (kind, size, length_m) = pusher(told);

@@ -92,6 +92,12 @@ pub(super) fn passes_partner(sv: &Party, partner: &Party, others: &[OtherParty])
         && !others.iter().any(|other| name(&other.kind).as_ref() == Some(&partner))
 }
 
+/// Whether somebody is told to have come through a junction, and not to have turned or entered another since.
+pub(super) fn has_crossed(party: &Party) -> bool {
+    let ways = |fact: &&ActFact| matches!(fact.act, Act::Enter | Act::Turn | Act::UTurn) && !fact.after_contact;
+    party.acts.iter().rfind(ways).is_some_and(|fact| fact.act == Act::Enter && fact.done && is_of_junction(fact))
+}
+
 /// Whether somebody is told to have entered a junction, and not a road or a lane, nor to have begun to.
 fn is_of_junction(fact: &ActFact) -> bool {
     let Source::Words { text, .. } = &fact.source else { return false };

@@ -33,6 +33,7 @@ impl Layout {
             narrow: has(RoadFeature::NarrowStreet),
             one_way: has(RoadFeature::OneWay),
             centre_line: has(RoadFeature::DoubleYellowLine),
+            right_lane: goes_out_right(account, partner),
             turn_lane: has(RoadFeature::TurnLane) && goes_to_turn_lane(account, partner),
             left_to_come: goes_to_turn_left(&account.sv),
             rear_door: rear_door(account, partner),
@@ -52,6 +53,15 @@ fn goes_to_turn_lane(account: &Account, partner: &Party) -> bool {
         _ => false,
     };
     lane(&account.sv) == Some(LaneWord::Left) && goes
+}
+
+/// Whether the partner changes lanes to its right behind an ego in the right lane, which is then the right one of those that go on.
+fn goes_out_right(account: &Account, partner: &Party) -> bool {
+    let out =
+        |fact: &ActFact| fact.act == Act::LaneChange && fact.side == Some(LeftRight::Right) && !fact.after_contact;
+    let right = told(&account.sv.lane) == Some(LaneWord::Right);
+    let stays = told(&partner.lane).is_none_or(|lane| lane == LaneWord::Right);
+    right && stays && told(&account.came_from) == Some(Origin::Behind) && partner.acts.iter().any(out)
 }
 
 fn standing(account: &Account, party: &Party) -> Standing {

@@ -1,5 +1,6 @@
 //! From where the partner came, where that is not told in a word.
 
+use crate::reading::order::steps;
 use crate::told::side::{Side, is_on_foot};
 use crate::told::zones::side_of;
 use recrash_model::account::{
@@ -95,7 +96,12 @@ pub(super) fn assumed_origin(crash_type: CrashType, sv: &Side, cp: &Side) -> Opt
 
 /// Whether it is told of somebody on foot, or of an animal, that it went into the ego's way or across.
 pub(super) fn walks_across(origin: Origin, partner: &Party) -> bool {
-    let along = matches!(origin, Origin::Ahead | Origin::Beside { .. });
+    // Who stood beside the ego's way, and then stepped out, came from there.
+    let stood = steps(partner, |act| matches!(act, Act::Hold | Act::Stop)).into_iter().max();
+    let steps_out = steps(partner, |act| matches!(act, Act::Cross | Act::Enter)).into_iter().max();
+    let stood = stood.is_some() && steps_out > stood;
+    let from_stand = matches!(origin, Origin::Cross { .. }) && stood;
+    let along = matches!(origin, Origin::Ahead | Origin::Beside { .. }) || from_stand;
     let on_foot = told(&partner.kind).and_then(Kind::partner_kind).is_some_and(is_on_foot);
     let crosses = told(&partner.movement) == Some(Movement::NmCrossing);
     let enters = [Act::Cross, Act::Enter, Act::PullOut].into_iter().any(|act| partner.did(act));

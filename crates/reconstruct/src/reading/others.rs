@@ -218,6 +218,7 @@ pub(super) fn thrower(account: &Account) -> Option<Thrower> {
     match other.place.as_ref().map(|fact| fact.value) {
         Some(Origin::Beside { side }) => Some(Thrower::Beside(side)),
         Some(Origin::Cross { side }) => Some(Thrower::Cross(side)),
+        Some(Origin::Ahead) => Some(Thrower::Ahead),
         // Who changes to its right comes from the left.
         _ => other.acts.iter().find(changes)?.side.map(|side| Thrower::Beside(side.other())),
     }

@@ -120,6 +120,7 @@ pub(super) fn side(party: &Party, kind: Option<Kind>, assumed: &mut Vec<String>,
             && (party.acts.iter().any(|fact| fact.act == Act::Turn && fact.done)
                 || movement == Some(Movement::Straight)
                 || movement == Some(Movement::Stopped) && went_on_straight(party)),
+        crossed: acts::has_crossed(party),
         completes: is_completing(party, movement),
         turns_wide: false,
         dodges: false,

@@ -251,6 +251,8 @@ impl Story<'_> {
                 (true, _) => Some(Role::Kerb),
                 (false, true) => Some(Role::Obstacle),
                 (false, false) if blocks => Some(Role::Lead),
+                // Who is double-parked stands in a lane.
+                (false, false) if double => matches!(place, Some(Origin::Beside { .. })).then_some(Role::Beside),
                 (false, false) => (!did(&[Act::Park])).then_some(Role::Kerb),
             };
         }

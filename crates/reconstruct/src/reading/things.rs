@@ -147,6 +147,11 @@ pub(super) fn swings(kind: Kind, thing: &Party, striker: Option<Striker>) -> boo
     matches!(kind, Kind::Gate | Kind::Barrier) && (moves || acts.into_iter().any(|act| thing.did(act)))
 }
 
+/// Whether a gate is told to open, and not to have come down.
+pub(super) fn opens(thing: &Party) -> bool {
+    thing.did(Act::OpenDoor) && !thing.did(Act::Fall)
+}
+
 /// Size of the post of a gate that swings. [m]
 pub(super) const POST: Size = Size { length_m: 0.3, width_m: 0.3 };
 

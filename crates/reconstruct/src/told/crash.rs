@@ -24,6 +24,8 @@ pub(crate) struct Told {
     pub(crate) thing: Option<Kind>,
     /// The partner is a gate that swung as they met.
     pub(crate) gate_swings: bool,
+    /// It is told to have opened: it lay across the way.
+    pub(crate) gate_opens: bool,
     /// How the partner lies that the ego drives over, where told.
     pub(crate) lies: Option<Lies>,
     /// Which of the others the partner fell off, or came out from under, ahead of the ego.
@@ -42,6 +44,8 @@ pub(crate) struct Told {
     pub(crate) slides: bool,
     pub(crate) origin: Origin,
     pub(crate) origin_told: bool,
+    /// It is told in which direction the partner went.
+    pub(crate) heading_told: bool,
     /// The partner came from the kerb behind the ego, round it.
     pub(crate) comes_round: bool,
     /// An oncoming partner left its own side.

@@ -70,6 +70,11 @@ impl Doing {
         self.is_pass() && self.over
     }
 
+    /// Whether it is that it slowed, or came to a stop.
+    pub(crate) const fn slows(&self) -> bool {
+        matches!(self.act, Act::Stop | Act::Slow)
+    }
+
     /// Whether it is a stand.
     pub(super) const fn is_stand(&self) -> bool {
         matches!(self.act, Act::Stop | Act::Hold)

@@ -34,6 +34,14 @@ impl Told {
         street && parked && !self.is_in_lane(of_ego) && (of_ego || self.thing.is_none())
     }
 
+    /// Whether the partner parks, forwards, behind an ego that stands at the kerb.
+    pub(crate) fn parks_behind(&self) -> bool {
+        let last = self.cp.acts.last().is_none_or(|doing| doing.act == Act::Park);
+        let parks = self.cp.movement == Some(Movement::ParkingManeuver) && last && !self.cp.backs_in;
+        let moves = self.cp.state == ContactState::Moving;
+        parks && moves && self.is_at_kerb() && matches!(self.origin, Origin::Behind | Origin::Parked { .. })
+    }
+
     /// Whether an ego that stood at the kerb has just left it.
     pub(super) fn leaves_kerb(&self) -> bool {
         let leaves = match self.sv.movement {
@@ -67,6 +75,14 @@ impl Told {
     pub(crate) fn backs_out(&self) -> bool {
         let beside = matches!(self.origin, Origin::Stall { .. } | Origin::Driveway { .. });
         beside && self.cp.state == ContactState::Reversing
+    }
+
+    /// Whether the partner backs from a stand across a street, and no road is told by which it would have come there.
+    pub(crate) fn backs_across(&self) -> bool {
+        let backs =
+            self.cp.state == ContactState::Reversing && self.cp.turning == Turning::No && self.cp.slants.is_none();
+        let across = matches!(self.origin, Origin::Cross { .. });
+        across && backs && self.origin_told && self.place == PlaceKind::Street && !self.heading_told
     }
 
     /// From which side the partner comes across.

@@ -65,6 +65,7 @@ impl Told {
             LaneWord::Center if let Some(counted) = self.counted(of_ego) => counted.place(lanes),
             // In a lot there may be one lane.
             LaneWord::Left if of_ego && self.layout.turn_lane => Some(1.min(lanes - 1)),
+            LaneWord::Right if self.layout.right_lane => lanes.checked_sub(2),
             LaneWord::Left | LaneWord::LeftTurn => Some(0),
             LaneWord::Right | LaneWord::RightTurn => Some(lanes - 1),
             LaneWord::Center => Some(lanes / 2),

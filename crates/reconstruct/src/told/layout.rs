@@ -50,6 +50,8 @@ pub(crate) struct Layout {
     pub(crate) centre_line: bool,
     /// A lane for left turns lies beside the ego's, which is told to be the left one of those that go on.
     pub(crate) turn_lane: bool,
+    /// A lane lies beside the ego's on the right, which is told to be the right one of those that go on.
+    pub(crate) right_lane: bool,
     /// The ego goes to turn left, and has not begun to.
     pub(crate) left_to_come: bool,
     /// The door that took part is told to be a rear one, or a front one.

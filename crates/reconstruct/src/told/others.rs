@@ -180,6 +180,8 @@ impl Extra {
 pub(crate) enum Thrower {
     /// Along the lane beside, or out of it.
     Beside(LeftRight),
+    /// It is ahead in the ego's lane.
+    Ahead,
     /// Out of a crossing road: that is not drawn.
     Cross(LeftRight),
 }

@@ -1,5 +1,6 @@
 //! Questions to who passes, comes over, or comes towards the ego.
 
+use crate::told::aside::Aside;
 use crate::told::crash::Told;
 use crate::told::doing::Doing;
 use crate::told::layout::strip_of;
@@ -41,6 +42,25 @@ impl Told {
         let left_m = self.sv_aside().map_or(0.0, |aside| aside.from_t_m - aside.to_t_m);
         let touched = side_of(&self.sv.zones).unwrap_or(0.0);
         self.cp.movement == Some(Movement::Passing) && left_m * touched >= LANE_M
+    }
+
+    /// Whether the partner keeps its lane beside an ego that changes into that, and is touched by its front or its flank.
+    pub(crate) fn keeps_lane_beside(&self, aside: Aside) -> bool {
+        let by_m = aside.to_t_m - aside.from_t_m;
+        let to = if by_m < 0.0 { LeftRight::Left } else { LeftRight::Right };
+        let there = match self.origin {
+            Origin::Beside { side } => side == to,
+            Origin::Behind => side_of(&self.sv.zones) == Some(if to == LeftRight::Left { 1.0 } else { -1.0 }),
+            _ => false,
+        };
+        let leaves = |doing: &Doing| doing.is_aside() && !doing.is_pass();
+        let straight = matches!(self.cp.movement, None | Some(Movement::Straight | Movement::Passing))
+            && self.cp.turning == Turning::No
+            && !self.cp.dodges
+            && !self.cp.changed_lanes
+            && !self.cp.acts.iter().any(leaves);
+        let beside = !self.sv.zones.is_empty() && !self.sv.zones.iter().any(|zone| zone.is_rear());
+        there && straight && beside && self.cp.state == ContactState::Moving && by_m.abs() >= LANE_M
     }
 
     /// Whether the partner stood behind the ego and changes lanes to the side on which it touches it then: out of the ego's lane.

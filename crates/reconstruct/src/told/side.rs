@@ -63,6 +63,8 @@ pub(crate) struct Side {
     pub(crate) turns_later: bool,
     /// Its turn was over, or all but over.
     pub(crate) turned: bool,
+    /// It is told to have come through the junction.
+    pub(crate) crossed: bool,
     /// It was completing a lane change.
     pub(crate) completes: bool,
     /// It turns all the way into the road that the other is on, to meet it head-on.

@@ -74,6 +74,7 @@ impl Told {
             ContactState::SettingOff if side.control.is_some() && crosses => 4.0,
             ContactState::SettingOff => 1.5,
             ContactState::Reversing => 1.2,
+            ContactState::Moving if side.kind == PartnerKind::Pedestrian => WALKS_MPS,
             ContactState::Moving if side.is_slow() => 3.0,
             ContactState::Moving if side.stood_first => 4.0,
             ContactState::Moving => match side.kind {

@@ -128,7 +128,14 @@ pub(super) fn stagings(told: &Told, ground: &Ground) -> Vec<Staging> {
         let Some(sv) = sv_at_contact(told, ground, sv_s_m) else { continue };
         // The post of a gate is not at an angle to the way through it.
         let through = [sv.heading, sv.heading + math::PI].map(math::wrap_angle).map(|heading| (heading, heading));
-        let faces = if told.gate_swings { through.to_vec() } else { headings(told, sv.heading, sv.heading) };
+        // One that opens lies across it, and swings along it.
+        let across =
+            through.map(|(_, heading)| math::wrap_angle(heading + math::FRAC_PI_2)).map(|heading| (heading, heading));
+        let faces = match told.gate_swings {
+            true if told.gate_opens => [across, through].concat(),
+            true => through.to_vec(),
+            false => headings(told, sv.heading, sv.heading),
+        };
         for (came, heading) in faces {
             for opening in &openings {
                 for &point in met_points(other).iter() {

@@ -43,9 +43,10 @@ impl Told {
 
     /// Whether the front of the one who is told to have been struck meets a flank of the one who is told to have struck it.
     pub(super) fn is_struck_otherwise(&self, (sv_seen, cp_seen): (ContactZone, ContactZone)) -> bool {
-        let flank = |zone: ContactZone| matches!(zone, ContactZone::Left | ContactZone::Right);
+        let flank = |zone: ContactZone| matches!(zone, ContactZone::Left | ContactZone::Right) || zone.is_rear();
         let drives = |side: &Side| side.state == ContactState::Moving;
         match self.striker {
+            _ if self.thing.is_some() => false,
             Some(Striker::Cp) if drives(&self.cp) && self.cp.zones.is_empty() => sv_seen.is_front() && flank(cp_seen),
             Some(Striker::Sv) if drives(&self.sv) && self.sv.zones.is_empty() => cp_seen.is_front() && flank(sv_seen),
             _ => false,
@@ -130,6 +131,9 @@ impl Told {
     /// Whether a partner that is told to stand beside the lanes would stand in one, or askew.
     pub(super) fn is_parked_otherwise(&self, ground: &Ground, cp: Pose) -> bool {
         let askew = math::sin(cp.heading).abs() > ASKEW && !self.diagonal;
+        if self.parks_behind() && ground.is_in_lanes(cp, 0.0, 0.0) {
+            return true;
+        }
         self.stands_beside(false) && (askew || ground.is_in_lanes(cp, 0.0, 0.0))
     }
 }
