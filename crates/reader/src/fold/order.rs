@@ -102,11 +102,6 @@ fn by_zones(account: &Account, partner: &Party) -> (FirstMover, &'static str) {
     };
     let under = |party: &Party| party.zones.iter().all(|zone| matches!(zone.value, Z::Bottom | Z::Top));
     let flank = |party: &Party| !under(party) && (side(party) || !has_zone(party, |zone| zone.is_front()));
-    let struck = account.striker.as_ref().filter(|striker| striker.source.is_told()).map(|striker| striker.value);
-    // Who strikes with a part that is not told, and on the front, was not there before.
-    if partner.zones.is_empty() && !account.sv.zones.is_empty() && struck == Some(Striker::Cp) && !flank(&account.sv) {
-        return (FirstMover::Both, "at about the same time");
-    }
     if partner.zones.is_empty() && !account.sv.zones.is_empty() {
         let value = if flank(&account.sv) { FirstMover::Sv } else { FirstMover::Cp };
         return (value, "whose flank is touched is there first");
