@@ -116,20 +116,20 @@ impl Failures {
         self.struck_standing + self.struck_moving + self.otherwise
     }
 
-    /// Each count with its words, in the order of sentences.
-    pub fn told(self) -> [(usize, &'static str); 3] {
-        [
+    /// Each count that there is with its words, in the order of sentences.
+    pub fn told(self) -> impl Iterator<Item = (usize, &'static str)> {
+        let all = [
             (self.struck_standing, "struck while it stood"),
             (self.struck_moving, "struck from where it does not look while it moved or had just stopped"),
             (self.otherwise, "otherwise"),
-        ]
+        ];
+        all.into_iter().filter(|(count, _)| *count > 0)
     }
 }
 
 impl std::fmt::Display for Failures {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let told = self.told().into_iter().filter(|(count, _)| *count > 0);
-        let told: Vec<String> = told.map(|(count, words)| format!("{count} {words}")).collect();
+        let told: Vec<String> = self.told().map(|(count, words)| format!("{count} {words}")).collect();
         f.write_str(&told.join(", "))
     }
 }

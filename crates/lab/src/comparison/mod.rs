@@ -125,6 +125,7 @@ fn verdict(base: &TestResult, new: &TestResult, level: Option<f64>) -> (Change, 
     }
     let (before, now) = (counts(base), counts(new));
     let told = |test: &TestResult, [failures, runs]: [usize; 2]| match (failures, telling(test)) {
+        (0, Some(outcome)) if outcome.met == Some(false) => "never in the situation of its record".to_owned(),
         (0, _) => "passed".to_owned(),
         (_, Some(outcome)) if runs == 1 => failed_how(outcome),
         _ => format!("failed {failures} of {runs}"),

@@ -66,6 +66,14 @@ fn a_test_is_broken_fixed_worse_better_or_the_same() {
 }
 
 #[test]
+fn who_never_came_into_the_situation_is_not_told_to_have_passed() {
+    let mut elsewhere = run(&[], 9.0);
+    elsewhere.outcome.as_mut().unwrap().met = Some(false);
+    let comparison = compare(&results(vec![("a", vec![run(&[Contact], 0.0)])]), &results(vec![("a", vec![elsewhere])]));
+    assert_eq!(comparison.tests[0].why, "contact, now never in the situation of its record");
+}
+
+#[test]
 fn what_is_random_is_flaky_until_it_is_clear() {
     let of = |failed: usize, runs: usize| -> Vec<TestRun> {
         (0..runs).map(|at| if at < failed { run(&[Contact], 0.0) } else { run(&[], 5.0) }).collect()

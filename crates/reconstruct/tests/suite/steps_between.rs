@@ -80,7 +80,7 @@ fn what_is_told_between_two_steps_is_seen_in_the_way() {
     let (sv, cp) = (CheckKind::SvActs, CheckKind::CpActs);
     let told: [(&str, CheckKind, &str, &[Act]); 10] = [
         (REACHED, sv, "stopped, began: set off", &[Act::Stop]),
-        (STOOD_AGAIN, sv, "stood, set off", &[Act::SetOff]),
+        (STOOD_AGAIN, sv, "stood, set off, slowed", &[Act::SetOff]),
         (SLOWED, sv, "slowed, set off", &[Act::Slow]),
         (STEERED_AWAY, sv, "passed, swerved to the left", &[Act::Swerve]),
         (INTO_A_LOT, sv, "turned to the left, stopped", &[Act::Turn]),

@@ -68,7 +68,7 @@ fn sentence(context: &Context) -> Markup {
 
 /// Failures by how they came about.
 fn manners(failures: Failures) -> Markup {
-    html! { @for (i, (count, words)) in failures.told().into_iter().enumerate() { @if i > 0 { ", " } b { (thousands(count)) } " " (words) } }
+    html! { @for (i, (count, words)) in failures.told().enumerate() { @if i > 0 { ", " } b { (thousands(count)) } " " (words) } }
 }
 
 /// The same of a suite that goes by accounts.
@@ -80,8 +80,8 @@ fn account_sentence(context: &Context, accounts: &AccountSet) -> Markup {
         (thousands(accounts.types.iter().map(|share| share.whole).sum())) " of them with every told fact shown. Told is what the program read in a report: what it misread, it does not find so. "
         @if s.cases < accounts.told.len() { b { (thousands(s.cases)) } " of them were picked. " } @else { "All of them are here. " }
         "In the crashes as reconstructed " b { (words::clean(&suite.ego, 60)) } ", from the handover on, came into the situation of its record in " b { (thousands(first.met)) " of the " (thousands(first.ran)) } " that it drove, and fails "
-        b { (thousands(first.failures.total())) " of those " (thousands(first.met)) } ": " (manners(first.failures)) ". A blow to an ego that stood has seldom to do with what it drove, and one from where it does not look hardly has. "
-        "After tuning within what the reports leave open it fails " b { (thousands(last.failures.total())) " of " (thousands(last.met)) } ": " (manners(last.failures)) "; " (thousands(s.by_tuning)) " of them after tuning alone"
+        b { (thousands(first.failures.total())) " of those " (thousands(first.met)) } @if first.failures.total() > 0 { ": " (manners(first.failures)) } ". A blow to an ego that stood has seldom to do with what it drove, and one from where it does not look hardly has. "
+        "After tuning within what the reports leave open it fails " b { (thousands(last.failures.total())) " of " (thousands(last.met)) } @if last.failures.total() > 0 { ": " (manners(last.failures)) } "; " (thousands(s.by_tuning)) " of them after tuning alone"
         @if s.parked > 0 { "; in " (thousands(s.parked)) " it was parked, and there is nothing to test" }
         ". A failure is a contact, a box gap below " (fixed(suite.profile.failure.min_gap_m, 1).unwrap_or_default())
         "\u{a0}m, leaving the road, or getting stuck."
