@@ -91,6 +91,9 @@ pub struct ChoiceArgs {
     pub model_dir: Option<PathBuf>,
 }
 
+/// The folder of a suite where none is named.
+const DEFAULT_FOLDER: &str = "suite";
+
 /// Options of a stage on its own.
 #[derive(Debug, Clone, Args)]
 pub struct StageArgs {
@@ -113,7 +116,7 @@ impl StageArgs {
 #[derive(Debug, Clone, Default, Args)]
 pub struct SuiteArgs {
     /// Folder of the suite; finished work in it is kept.
-    #[arg(long, short, value_name = "DIR", default_value = "suite")]
+    #[arg(long, short, value_name = "DIR", default_value = DEFAULT_FOLDER)]
     pub out: PathBuf,
     /// Where crash records come from.
     #[command(flatten)]
@@ -308,7 +311,7 @@ impl SuiteArgs {
             ..none
         };
         let Permissions { replace, discard_edits, reselect, .. } = self.permissions();
-        typed != of_a_file || replace || discard_edits || reselect || self.out != Path::new("suite")
+        typed != of_a_file || replace || discard_edits || reselect || self.out != Path::new(DEFAULT_FOLDER)
     }
 
     /// What may be used of the machine.
