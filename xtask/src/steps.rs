@@ -14,47 +14,57 @@ pub type Result<T = ()> = std::result::Result<T, String>;
 /// Name of a step, and what it does.
 type Step = (&'static str, fn(&mut Tally) -> Result);
 
-/// The steps of [`ci`]: first what is cheap. What tests need is set up before them, so that each runs once.
+/// All steps.
 pub const STEPS: [Step; 10] = [
     ("format", format),
     ("tidy", tidy::run),
-    ("lint", lint),
     ("prepare", prepare),
     ("test", test),
-    (ASIDE, python),
+    ("python", python),
+    ("browser", browser),
+    ("lint", lint),
     ("fuzz", fuzz::run),
     ("docs", docs),
     ("wheel", wheel::step),
-    ("browser", browser),
 ];
 
-/// The step that runs beside those of [`BESIDE`]: it keeps one core busy, and builds nothing.
-const ASIDE: &str = "python";
-const BESIDE: [&str; 2] = ["fuzz", "docs"];
+/// Names the program that is tested. Who asks cargo for it waits until nobody else builds.
+const BUILT: &str = "RECRASH";
+/// What [`ci`] does first: what is cheap, and what tests need.
+const FIRST: [&str; 3] = ["format", "tidy", "prepare"];
+/// Then, one after the other in a process of its own, the steps that run what was built; they keep about one core busy.
+const RUNNING: [&str; 3] = ["test", "python", "browser"];
+/// Beside them, one after the other, the steps that build something else.
+const BUILDING: [&str; 4] = ["lint", "fuzz", "docs", "wheel"];
 
-/// Everything; stops at the first failure.
+/// Everything. The first failure ends what it is in, but of what runs beside each other the other one goes on to its end: so one
+/// run tells more of what is wrong, and leaves no test behind that nobody waits for.
 pub fn ci(tally: &mut Tally) -> Result {
-    let mut aside = None;
-    for (name, step) in STEPS {
-        if name == ASIDE {
-            // What it runs is built before anybody else asks cargo for something.
-            built()?;
-            aside = Some((Instant::now(), begun_aside(name)?));
-            continue;
-        }
-        if !BESIDE.contains(&name)
-            && let Some((begun, aside)) = aside.take()
-        {
-            timed(ASIDE, begun, || told_aside(aside, tally))?;
-        }
-        timed(name, Instant::now(), || step(tally))?;
+    in_turn(&FIRST, tally)?;
+    // What tests run is built before anybody else asks cargo for something.
+    let mut program = PathBuf::new();
+    timed("build", || built().map(|built| program = built))?;
+    let aside = Aside::begin(&RUNNING, &program)?;
+    let beside = in_turn(&BUILDING, tally);
+    if let Err(why) = &beside {
+        eprintln!("xtask: {why}; {} go on to their end", RUNNING.join(", "));
     }
-    Ok(())
+    let aside = aside.told(tally);
+    beside.and(aside)
+}
+
+/// The steps of these names, each begun when the one before it has ended; none behind one that failed.
+pub fn in_turn(names: &[impl AsRef<str>], tally: &mut Tally) -> Result {
+    names.iter().try_for_each(|name| {
+        let named = STEPS.iter().find(|(step, _)| *step == name.as_ref());
+        let (name, step) = named.ok_or_else(|| format!("there is no step {}", name.as_ref()))?;
+        timed(name, || step(tally))
+    })
 }
 
 /// Runs a step, and says how long that took.
-fn timed(name: &str, begun: Instant, step: impl FnOnce() -> Result) -> Result {
-    let before = processor_seconds();
+fn timed(name: &str, step: impl FnOnce() -> Result) -> Result {
+    let (begun, before) = (Instant::now(), processor_seconds());
     println!("== xtask {name}");
     step().map_err(|why| format!("{name}: {why}"))?;
     let processor =
@@ -63,7 +73,7 @@ fn timed(name: &str, begun: Instant, step: impl FnOnce() -> Result) -> Result {
     Ok(())
 }
 
-/// A step in a process of its own, which ends with whoever asked for it. What it says is kept in a file.
+/// Steps in a process of their own, which ends with whoever asked for them. What they say is kept in a file, and shown in one piece.
 struct Aside(Child, PathBuf);
 
 impl Drop for Aside {
@@ -74,25 +84,28 @@ impl Drop for Aside {
     }
 }
 
-fn begun_aside(name: &str) -> Result<Aside> {
-    let told = target().join(format!("xtask-{name}.txt"));
-    let begin = || {
-        let file = std::fs::File::create(&told)?;
-        let errors = file.try_clone()?;
-        Command::new(std::env::current_exe()?).arg(name).stdin(Stdio::null()).stdout(file).stderr(errors).spawn()
-    };
-    begin().map(|child| Aside(child, told.clone())).map_err(|error| format!("{name}: {error}"))
-}
-
-/// Waits for a step that was begun; shows and counts what it said.
-fn told_aside(mut aside: Aside, tally: &mut Tally) -> Result {
-    let status = aside.0.wait().map_err(|error| error.to_string())?;
-    let told = std::fs::read(&aside.1).map_err(|error| error.to_string())?;
-    for line in String::from_utf8_lossy(&told).lines() {
-        println!("{line}");
-        tally.read(line);
+impl Aside {
+    fn begin(names: &[&str], program: &Path) -> Result<Aside> {
+        let told = target().join("xtask-aside.txt");
+        let begin = || {
+            let file = std::fs::File::create(&told)?;
+            let errors = file.try_clone()?;
+            let mut command = Command::new(std::env::current_exe()?);
+            command.args(names).env(BUILT, program).stdin(Stdio::null()).stdout(file).stderr(errors).spawn()
+        };
+        begin().map(|child| Aside(child, told.clone())).map_err(|error| format!("{}: {error}", names.join(", ")))
     }
-    if status.success() { Ok(()) } else { Err(format!("ended with {status}")) }
+
+    /// Waits for them; shows and counts what they said.
+    fn told(mut self, tally: &mut Tally) -> Result {
+        let status = self.0.wait().map_err(|error| error.to_string())?;
+        let told = std::fs::read(&self.1).map_err(|error| error.to_string())?;
+        for line in String::from_utf8_lossy(&told).lines() {
+            println!("{line}");
+            tally.read(line);
+        }
+        if status.success() { Ok(()) } else { Err(format!("{} ended with {status}, see above", RUNNING.join(", "))) }
+    }
 }
 
 /// Processor time of the programs that ended so far, with those that they started; where the system tells it. [s]
@@ -163,7 +176,7 @@ fn python(tally: &mut Tally) -> Result {
         return missing(tally, "python", "there is no .venv; `cargo xtask prepare` makes it");
     }
     let mut command = command(venv_python());
-    command.args(["-m", "pytest", "--quiet", "tests"]).env("RECRASH", built()?);
+    command.args(["-m", "pytest", "--quiet", "tests"]).env(BUILT, built()?);
     told(&mut command, tally)
 }
 
@@ -225,8 +238,11 @@ fn browser_folder() -> PathBuf {
     root().join("crates/report/tests/browser")
 }
 
-/// The program as the Rust tests run it: one build serves all. Nothing is built right after them.
+/// The program as the Rust tests run it: one build serves all. Nothing is built right after them, or where `RECRASH` names one.
 pub fn built() -> Result<PathBuf> {
+    if let Some(program) = std::env::var_os(BUILT) {
+        return Ok(program.into());
+    }
     cargo(&["test", "--workspace", "--no-run", "--quiet"], &[])?;
     Ok(target().join(if cfg!(windows) { "debug/recrash.exe" } else { "debug/recrash" }))
 }
