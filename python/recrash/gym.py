@@ -121,6 +121,8 @@ def _chosen(suite: Source, part: Split | None, held_out_share: float, crash_type
         if wanted - there:
             raise InputError(f"no scenario is of {sorted(wanted - there)}; there are: {sorted(filter(None, there))}")
         scenarios = [scenario for scenario in scenarios if scenario.crash_type in wanted]
+    # Of a record whose ego was parked nobody takes over.
+    scenarios = [scenario for scenario in scenarios if scenario.tested]
     if not scenarios:
         raise InputError("no scenario is left to drive in; choose another suite, split or crash type")
     return scenarios

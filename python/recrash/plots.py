@@ -31,7 +31,7 @@ COLOURS = {
     "untold": "#CCCCCC",
     "passed": "#009E73",
     "failed": "#D55E00",
-    "error": "#000000",
+    "not_run": "#000000",
     "unmet": "#CCCCCC",
 }
 #: What all plots share: sizes of a column of a paper, and letters that stay letters in a PDF.
@@ -226,14 +226,10 @@ def results(table: Table | Mapping[str, Sequence[Any]], *, axes: Sequence[Any] |
     ``table`` is what :func:`recrash.test` gives. ``by`` is the column of the bars.
     """
     columns = _columns(table)
-    errors = columns.get("error", [None] * len(columns["scenario"]))
-    verdicts = [
-        "error" if error else "failed" if failed else "passed"
-        for error, failed in zip(errors, columns.get("failed", [None] * len(errors)), strict=True)
-    ]
+    verdicts = columns["verdict"]
     counts = Counter(zip(columns[by], verdicts, strict=True))
     names = [each for each, _ in Counter(columns[by]).most_common()][::-1]
-    words = {"passed": "passed", "failed": "failed", "error": "not run"}
+    words = {"passed": "passed", "failed": "failed", "unmet": "never in the situation", "not_run": "not run"}
     used = {name: word for name, word in words.items() if name in verdicts}
     with matplotlib.rc_context(STYLE):
         if axes is None:
@@ -254,7 +250,7 @@ def results(table: Table | Mapping[str, Sequence[Any]], *, axes: Sequence[Any] |
 def _suite_verdict(case: Mapping[str, Any], last: Mapping[str, Any] | None) -> str:
     """What the last run of a case says: a run that never came into the situation of its record and did not fail is no pass."""
     if last is None:
-        return "error"
+        return "not_run"
     if last["failed"]:
         return "failed"
     return "unmet" if case.get("situation_met") is False else "passed"
@@ -267,7 +263,7 @@ def suite(suite: Suite) -> Any:
     last = [case.get("tuned") or case.get("first") for case in cases]
     names = [_case_type(case) for case in cases]
     verdicts = [_suite_verdict(case, each) for case, each in zip(cases, last, strict=True)]
-    words = {"passed": "passed", "failed": "failed", "unmet": "never in the situation", "error": "nothing to test"}
+    words = {"passed": "passed", "failed": "failed", "unmet": "never in the situation", "not_run": "nothing to test"}
     order = [each for each, _ in Counter(names).most_common()][::-1]
     counts = Counter(zip(names, verdicts, strict=True))
     with matplotlib.rc_context(STYLE):

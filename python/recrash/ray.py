@@ -35,7 +35,7 @@ from recrash import _recrash
 from recrash._recrash import Accounts, Scenario
 from recrash._show import counted, wants_progress
 from recrash.errors import RecrashError
-from recrash.suite import Location, as_result, load_scenarios, read, row_of, runs, tune_one
+from recrash.suite import Location, as_result, in_tested, load_scenarios, read, row_of, runs, tune_one
 
 __all__ = ["corpus", "sweep", "test", "tune"]
 
@@ -48,12 +48,12 @@ AHEAD = 4
 #: Kinds of the columns of a test, so that every batch has the same, whatever is missing in it.
 TEST = pyarrow.schema(
     [
-        *((name, pyarrow.string()) for name in ("scenario", "template", "crash_type", "ego")),
-        ("failed", pyarrow.bool_()),
-        ("termination", pyarrow.string()),
+        *((name, pyarrow.string()) for name in ("scenario", "template", "crash_type", "ego", "verdict")),
+        *((name, pyarrow.bool_()) for name in ("failed", "met")),
+        *((name, pyarrow.string()) for name in ("cause", "termination")),
         ("duration_s", pyarrow.float64()),
         ("findings", pyarrow.string()),
-        *((name, pyarrow.float64()) for name in ("min_gap_m", "closing_speed_mps", "delta_v_mps")),
+        *((name, pyarrow.float64()) for name in ("min_gap_m", "closing_speed_mps", "delta_v_mps", "other_delta_v_mps")),
         *((name, pyarrow.string()) for name in ("state_hash", "error")),
     ]
 )
@@ -246,7 +246,7 @@ class _Seat:
             return runs(scenarios, ego, profile=profile, simulator=simulator, progress=False)
         if self.simulator is None:
             self.simulator = _recrash.Simulator(ego, profile, simulator, python, 1)
-        return [as_result(each) for each in self.simulator.run_all(scenarios)]
+        return [as_result(each) for each in in_tested(self.simulator.run_all, scenarios)]
 
 
 def _test_by_name(shared: tuple[Any, ...], _: _Seat | None, scenarios: Sequence[Scenario]) -> pyarrow.Table:

@@ -16,8 +16,8 @@ from recrash.errors import EgoError, InputError, RecrashError
 Location = str | os.PathLike[str]
 #: Columns of a row of :func:`test` behind those of the scenario.
 RESULTS = (
-    "ego", "failed", "termination", "duration_s", "findings", "min_gap_m", "closing_speed_mps", "delta_v_mps",
-    "state_hash", "error",
+    "ego", "verdict", "failed", "met", "cause", "termination", "duration_s", "findings", "min_gap_m", "closing_speed_mps",
+    "delta_v_mps", "other_delta_v_mps", "state_hash", "error",
 )  # fmt: skip
 #: Scenarios that are run between two looks at Ctrl-C.
 AT_ONCE = 256
@@ -76,7 +76,8 @@ def load_scenarios(source: Location | Iterable[Scenario | Location]) -> list[Sce
                 found[file.name] = file
         if not found:
             raise InputError(f"{folder} holds no scenario file; name a suite, or a folder of scenario files")
-        return [Scenario.load(file) for file in found.values()]
+        types = _recrash.crash_types(folder)
+        return [Scenario.load(file, crash_type=types.get(name.removesuffix(".json"))) for name, file in found.items()]
     return [each if isinstance(each, Scenario) else Scenario.load(each) for each in source]
 
 
@@ -111,17 +112,34 @@ def runs(
     if ego is None or isinstance(ego, str):
         host = _recrash.Simulator(ego, profile, simulator, python, threads)
         # Few enough that Ctrl-C is heard soon.
-        parts = [scenarios[begin : begin + AT_ONCE] for begin in range(0, len(scenarios), AT_ONCE)] or [scenarios]
-        done = (host.run_all(part) for part in parts)
+        parts = [scenarios[begin : begin + AT_ONCE] for begin in range(0, len(scenarios), AT_ONCE)]
+        done = (in_tested(host.run_all, part) for part in parts)
         told = counted(done, "test", len(parts), shown and len(parts) > 1)
         return [as_result(each) for part in told for each in part]
     results: list[Run | RecrashError] = []
     for scenario in counted(scenarios, "test", len(scenarios), shown):
+        if not scenario.tested:
+            results.append(nothing_to_test(scenario))
+            continue
         try:
             results.append(scenario.run(ego, profile=profile, simulator=simulator))
         except EgoError as error:
             results.append(error)
     return results
+
+
+def in_tested(
+    run: Callable[[list[Scenario]], Sequence[Run | Exception]], scenarios: Sequence[Scenario]
+) -> list[Run | Exception]:
+    """Run the scenarios in which there is something to test; in the places of the others stands that there is nothing."""
+    tested = [each for each in scenarios if each.tested]
+    done = iter(run(tested) if tested else ())
+    return [next(done) if each.tested else nothing_to_test(each) for each in scenarios]
+
+
+def nothing_to_test(scenario: Scenario) -> RecrashError:
+    """Say of the crash of a parked ego that nobody takes over."""
+    return RecrashError(f"{scenario.id}: its ego was parked, so there is nothing to test")
 
 
 def as_result(each: Run | Exception) -> Run | RecrashError:
@@ -146,6 +164,9 @@ def test(
     ``ego`` is a name (see ``recrash.EGOS``), a command (``"cmd:./my_stack"``), or a Python object: a function of an
     observation, or a class or object with ``control(observation)`` and, if it likes, ``reset(world)`` and ``end(ending)``.
     An ego that raises fails its scenario, with ``error`` saying what and where; the rest goes on.
+
+    ``verdict`` is ``failed``, ``passed``, ``unmet`` (no failure, and never in the situation of its record: no pass) or ``not_run``,
+    as of records whose ego was parked: ``error`` says why.
 
     ``simulator="metadrive"`` runs MetaDrive's own egos (``recrash.METADRIVE_EGOS``) in MetaDrive; ``python`` is the interpreter
     that has it, this one without. ``progress`` shows a bar, by itself on a terminal and in a notebook.
@@ -224,19 +245,23 @@ def row_of(scenario: Scenario, result: Run | RecrashError) -> dict[str, Any]:
     """Put a run, or what a scenario failed of, as a row of :func:`test`."""
     row: dict[str, Any] = {"scenario": scenario.id, "template": scenario.template, "crash_type": scenario.crash_type}
     if isinstance(result, RecrashError):
-        return {**row, **dict.fromkeys(RESULTS), "error": str(result)}
+        return {**row, **dict.fromkeys(RESULTS), "verdict": "not_run", "error": str(result)}
     severity = result.severity
     failures = [finding["kind"] for finding in result.findings]
     return {
         **row,
         "ego": result.ego,
+        "verdict": "failed" if result.failed else "unmet" if result.met is False else "passed",
         "failed": result.failed,
+        "met": result.met,
+        "cause": result.cause,
         "termination": result.termination,
         "duration_s": result.duration_s,
         "findings": ";".join(dict.fromkeys(failures)) or None,
         "min_gap_m": result.min_gap_m,
         "closing_speed_mps": severity["closing_speed_mps"] if severity else None,
         "delta_v_mps": severity["first"]["delta_v_mps"] if severity else None,
+        "other_delta_v_mps": severity["second"]["delta_v_mps"] if severity else None,
         "state_hash": result.state_hash,
         "error": None,
     }

@@ -13,6 +13,7 @@ import pytest
 
 import recrash
 from recrash import InputError, RecrashError, Suite
+from recrash.gym import CrashVectorEnv
 
 SAMPLE = Path(__file__).parents[2] / "crates" / "records" / "data" / "sample.csv"
 
@@ -45,6 +46,34 @@ def test_an_ego_is_tested_in_a_suite_and_nothing_in_the_folder_changes(suite):
     table = suite.test(lambda _: (0.0, 0.0))
     assert len(table) == len(suite.scenarios())
     assert {file: file.read_bytes() for file in suite.folder.rglob("*") if file.is_file()} == before
+
+
+def test_scenarios_of_a_suite_know_their_crash_types(suite):
+    accounts = suite.folder / "3-narratives"
+    told = {
+        scenario.id: json.loads((accounts / f"{scenario.id}.account.json").read_text())["crash_type"]["value"]
+        for scenario in suite.scenarios()
+    }
+    assert {scenario.id: scenario.crash_type for scenario in suite.scenarios()} == told
+    assert {scenario.crash_type for scenario in CrashVectorEnv(suite, 1, crash_types=[min(told.values())]).scenarios} == {
+        min(told.values())
+    }
+
+
+def test_who_was_parked_is_not_tested_and_who_was_never_there_has_not_passed(options):
+    scenarios, _ = recrash.read(options["files"]).reconstruct()
+    parked = [scenario.id for scenario in scenarios if not scenario.tested]
+    assert parked
+    for ego in ("metadrive-idm", lambda _: (0.0, -1.0)):
+        rows = recrash.test(scenarios, ego, progress=False).to_dicts()
+        assert [row["scenario"] for row in rows if row["verdict"] == "not_run"] == parked
+        assert all("its ego was parked" in row["error"] for row in rows if row["scenario"] in parked)
+        driven = [row for row in rows if row["scenario"] not in parked]
+        for row in driven:
+            assert row["verdict"] == ("failed" if row["failed"] else "passed" if row["met"] else "unmet"), row
+            assert (row["cause"] is None) == (not row["failed"])
+            assert (row["other_delta_v_mps"] is None) == (row["delta_v_mps"] is None)
+        assert {row["verdict"] for row in driven} >= {"failed", "unmet"}
 
 
 def test_progress_is_told_and_ctrl_c_keeps_what_is_done(options, tmp_path):

@@ -4,8 +4,9 @@
 //! An element is a piece of the scenario's JSON that can be taken away, or a number that can be set back. What cannot be run
 //! without something else is no element: taking it away says nothing.
 
+use crate::judging::run_scenario;
 use crate::perturb::{Nudge, Who, nudged, others};
-use crate::robustness::fails;
+use recrash_model::metrics::FindingKind;
 use recrash_model::profile::SystemProfile;
 use recrash_model::scenario::ScenarioDraft;
 use recrash_roads::{RunError, Simulator};
@@ -26,11 +27,11 @@ const OF_EGO: [&str; 3] = ["parts", "stops", "recorded/acts"];
 /// A failing scenario and what it needs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MinimalFailure {
-    /// The scenario without what it does not need; it fails.
+    /// The scenario without what it does not need; it fails by the same kind of finding, its gravest.
     pub draft: ScenarioDraft,
     /// What was taken away or set back, in order.
     pub taken: Vec<String>,
-    /// What is left: without any one of these it passes.
+    /// What is left: without any one of these that failure is gone.
     pub needed: Vec<Needed>,
     /// The nearest scenario that passes; `None` where none was found, such as where the ego fails by itself.
     pub twin: Option<Twin>,
@@ -66,18 +67,48 @@ struct Element {
     set_back: Option<Value>,
 }
 
+/// How a draft comes out beside the failure that is stripped.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Outcome {
+    /// It fails so as well.
+    Same,
+    /// It fails otherwise.
+    Otherwise,
+    Passes,
+}
+
 /// Runs drafts and counts them.
 struct Trial<'a> {
     simulator: &'a dyn Simulator,
     profile: &'a SystemProfile,
+    /// The failure that is stripped, by its gravest kind; `None` where there is none.
+    kind: Option<FindingKind>,
     runs: usize,
 }
 
-impl Trial<'_> {
-    /// Whether it fails; `None` where it may not be run.
-    fn fails(&mut self, draft: &ScenarioDraft) -> Result<Option<bool>, RunError> {
+impl<'a> Trial<'a> {
+    /// For the failure of a draft.
+    fn of(draft: &ScenarioDraft, simulator: &'a dyn Simulator, profile: &'a SystemProfile) -> Result<Self, RunError> {
+        let mut trial = Self { simulator, profile, kind: None, runs: 0 };
+        trial.kind = trial.failures(draft)?.and_then(|kinds| kinds.into_iter().min());
+        Ok(trial)
+    }
+
+    /// Kinds of failures of a draft; `None` where it may not be run.
+    fn failures(&mut self, draft: &ScenarioDraft) -> Result<Option<Vec<FindingKind>>, RunError> {
         self.runs += 1;
-        Ok(fails(draft.clone(), self.simulator, self.profile)?.map(|(failed, _)| failed))
+        let Ok(checked) = recrash_roads::check(draft.clone()) else { return Ok(None) };
+        let run = run_scenario(&checked.value, self.simulator, self.profile, None)?;
+        Ok(Some(run.failures().collect()))
+    }
+
+    /// How it comes out; `None` where it may not be run.
+    fn outcome(&mut self, draft: &ScenarioDraft) -> Result<Option<Outcome>, RunError> {
+        Ok(self.failures(draft)?.map(|kinds| match self.kind {
+            _ if kinds.is_empty() => Outcome::Passes,
+            Some(kind) if kinds.contains(&kind) => Outcome::Same,
+            _ => Outcome::Otherwise,
+        }))
     }
 }
 
@@ -91,7 +122,7 @@ pub fn minimal(
     simulator: &dyn Simulator,
     profile: &SystemProfile,
 ) -> Result<MinimalFailure, RunError> {
-    let mut trial = Trial { simulator, profile, runs: 0 };
+    let mut trial = Trial::of(draft, simulator, profile)?;
     let record = record.map(|draft| serde_json::to_value(draft).unwrap_or_default());
     let mut current = draft.clone();
     let mut taken = Vec::new();
@@ -100,16 +131,17 @@ pub fn minimal(
         loop {
             let Some(element) = elements(&current, record.as_ref()).into_iter().nth(at) else { break };
             let without = without(&current, &element);
-            match without.as_ref().map(|draft| trial.fails(draft)).transpose()?.flatten() {
-                Some(true) => {
+            match without.as_ref().map(|draft| trial.outcome(draft)).transpose()?.flatten() {
+                Some(Outcome::Same) => {
                     current = without.unwrap_or(current);
                     taken.push(element.name);
                     found = true;
                     continue;
                 }
-                Some(false) => {
+                Some(outcome) => {
                     needed.push(Needed { name: element.name.clone(), pointer: element.pointer });
-                    passing.extend(without.map(|draft| (element.name, draft)));
+                    let passes = without.filter(|_| outcome == Outcome::Passes);
+                    passing.extend(passes.map(|draft| (element.name, draft)));
                 }
                 None => {}
             }
@@ -132,8 +164,8 @@ pub fn minimal(
     Ok(MinimalFailure { draft: current, taken, needed, twin, runs: trial.runs })
 }
 
-/// Every single element of a scenario taken away: what it is, and whether the rest fails; `None` where the rest may not be run. For
-/// whoever checks that a failure is minimal.
+/// Every single element of a scenario taken away: what it is, and whether the rest fails so as well; `None` where the rest may not be
+/// run. For whoever checks that a failure is minimal.
 ///
 /// # Errors
 /// The simulator or the ego failed.
@@ -144,11 +176,11 @@ pub fn without_each(
     profile: &SystemProfile,
 ) -> Result<Vec<(String, Option<bool>)>, RunError> {
     let record = record.map(|draft| serde_json::to_value(draft).unwrap_or_default());
-    let mut trial = Trial { simulator, profile, runs: 0 };
+    let mut trial = Trial::of(draft, simulator, profile)?;
     let each = |element: Element| {
         let rest = without(draft, &element);
-        let failed = rest.map(|draft| trial.fails(&draft)).transpose()?.flatten();
-        Ok((element.name, failed))
+        let outcome = rest.map(|draft| trial.outcome(&draft)).transpose()?.flatten();
+        Ok((element.name, outcome.map(|outcome| outcome == Outcome::Same)))
     };
     elements(draft, record.as_ref()).into_iter().map(each).collect()
 }
@@ -331,14 +363,14 @@ fn moved_twin(draft: &ScenarioDraft, trial: &mut Trial) -> Result<Option<Twin>, 
         for &who in &everyone {
             for (way, how) in ways {
                 let at = |by_m: f64| nudged(draft, who, way.times(by_m));
-                if trial.fails(&at(by_m))? != Some(false) {
+                if trial.outcome(&at(by_m))? != Some(Outcome::Passes) {
                     continue;
                 }
                 let (mut fails_m, mut passes_m): (f64, f64) = (before_m, by_m);
                 for _ in 0..HALVINGS {
                     let middle_m = 0.5 * (fails_m + passes_m);
-                    match trial.fails(&at(middle_m))? {
-                        Some(false) => passes_m = middle_m,
+                    match trial.outcome(&at(middle_m))? {
+                        Some(Outcome::Passes) => passes_m = middle_m,
                         _ => fails_m = middle_m,
                     }
                 }

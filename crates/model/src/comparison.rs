@@ -22,6 +22,8 @@ pub enum Change {
     Better,
     /// Its runs come out differently by chance alone, as far as they can tell.
     Flaky,
+    /// On one side alone it came into the situation of its record, and it fails in none now: neither better nor worse is told.
+    Unmet,
     /// It gave a rollout on one side only, or on neither.
     NotRun,
     /// The test itself is another one.
@@ -36,12 +38,13 @@ pub enum Change {
 
 impl Change {
     /// Every change, in the order of tables.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::Broken,
         Self::Worse,
         Self::Fixed,
         Self::Better,
         Self::Flaky,
+        Self::Unmet,
         Self::NotRun,
         Self::Changed,
         Self::Added,
@@ -57,6 +60,7 @@ impl Change {
             Self::Fixed => "fixed",
             Self::Better => "better",
             Self::Flaky => "flaky",
+            Self::Unmet => "unmet",
             Self::NotRun => "not_run",
             Self::Changed => "changed",
             Self::Added => "added",
@@ -67,7 +71,11 @@ impl Change {
 
     /// For sentences.
     pub fn label(self) -> &'static str {
-        if self == Self::NotRun { "not run" } else { self.name() }
+        match self {
+            Self::Unmet => "not met",
+            Self::NotRun => "not run",
+            _ => self.name(),
+        }
     }
 }
 
@@ -163,14 +171,19 @@ impl Comparison {
         tests
     }
 
-    /// How many tests were on both sides with the same content, so that they can be compared at all.
-    pub fn comparable(&self) -> usize {
+    /// Tests that were on both sides with the same content, so that they can be compared at all.
+    pub fn comparable(&self) -> impl Iterator<Item = &Compared> {
         let apart = [Change::Changed, Change::Added, Change::Removed];
-        self.tests.iter().filter(|test| !apart.contains(&test.change)).count()
+        self.tests.iter().filter(move |test| !apart.contains(&test.change))
     }
 }
 
 impl Compared {
+    /// Whether it gave a rollout for the baseline.
+    pub fn ran_before(&self) -> bool {
+        self.base.as_ref().is_some_and(|side| side.runs > 0)
+    }
+
     /// The greater delta-v of both sides. [m/s]
     pub fn harm_mps(&self) -> f64 {
         [&self.base, &self.new].into_iter().flatten().map(|side| side.delta_v_mps).fold(0.0, f64::max)

@@ -9,6 +9,8 @@ use crate::scenario::{ScenarioDraft, Source};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+/// File by which a folder is a frozen suite.
+pub const FROZEN_FILE: &str = "frozen.json";
 /// The frozen suites' format tag.
 pub const FROZEN_FORMAT: &str = "recrash.frozen/1";
 

@@ -429,7 +429,7 @@ impl Verdict {
     /// Whether the rollout is true to its record: yes where every told fact is shown, no where one is not, unchecked where
     /// one cannot be shown or nothing was told.
     pub fn faithful(&self) -> Answer {
-        let any = |result| self.checks.iter().any(|check| check.result == result);
+        let any = |result| self.told().any(|check| check.result == result);
         if any(CheckResult::NotShown) {
             Answer::No
         } else if any(CheckResult::CannotBeShown) || !any(CheckResult::Shown) {
@@ -439,14 +439,19 @@ impl Verdict {
         }
     }
 
+    /// The checks of told facts: whether a system under test came into the situation is none.
+    fn told(&self) -> impl Iterator<Item = &Check> {
+        self.checks.iter().filter(|check| check.kind != CheckKind::Situation)
+    }
+
     /// The told facts that the rollout does not show.
     pub fn failures(&self) -> impl Iterator<Item = &Check> {
-        self.checks.iter().filter(|check| check.result == CheckResult::NotShown)
+        self.told().filter(|check| check.result == CheckResult::NotShown)
     }
 
     /// The told facts that the rollout cannot show.
     pub fn unchecked(&self) -> impl Iterator<Item = &Check> {
-        self.checks.iter().filter(|check| check.result == CheckResult::CannotBeShown)
+        self.told().filter(|check| check.result == CheckResult::CannotBeShown)
     }
 }
 

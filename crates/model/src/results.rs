@@ -140,6 +140,12 @@ impl TestResult {
         self.runs.iter().filter(|run| run.verdict == TestVerdict::Failed).count()
     }
 
+    /// Whether there are runs, none failed, and none came into the situation of its record.
+    pub fn never_met(&self) -> bool {
+        let unmet = |run: &TestRun| run.outcome.as_ref().is_some_and(|outcome| outcome.met == Some(false));
+        self.verdict() == TestVerdict::Passed && self.runs.iter().all(unmet)
+    }
+
     /// How all of its runs came out together: the worst, where not running is worst.
     pub fn verdict(&self) -> TestVerdict {
         self.runs.iter().map(|run| run.verdict).max().unwrap_or(TestVerdict::NotRun)

@@ -1,8 +1,9 @@
 //! What can go wrong outside the stages, with what, where and how to mend it.
 
 use recrash_model::Diagnostic;
+use recrash_model::frozen::FROZEN_FILE;
 use recrash_roads::RunError;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Why a command stopped.
 #[derive(Debug, thiserror::Error)]
@@ -34,10 +35,7 @@ pub enum PipelineError {
         why: String,
     },
     /// A stage is to work on a suite that is not there.
-    #[error(
-        "there is no suite in {}: it holds no suite.json; check the folder, or make one there with `recrash run --out {}`",
-        dir.display(), dir.display()
-    )]
+    #[error("there is no suite in {}: {}", dir.display(), without_suite(dir))]
     NoSuite {
         /// The folder.
         dir: PathBuf,
@@ -189,19 +187,30 @@ impl PipelineError {
             | Self::Pull { .. }
             | Self::Threads(_)
             | Self::Ledger(_) => 1,
-            Self::NoSuite { .. }
-            | Self::MissingStage { .. }
+            Self::MissingStage { .. }
             | Self::StaleStage { .. }
             | Self::ChangedByHand { .. }
             | Self::NotASuite { .. }
             | Self::OtherSuite { .. }
             | Self::Untrusted { .. }
             | Self::Usage(_) => 2,
-            Self::BadInput { .. } | Self::Scenario { .. } | Self::Damaged { .. } | Self::ModelRefused(_) => 3,
+            Self::NoSuite { .. }
+            | Self::BadInput { .. }
+            | Self::Scenario { .. }
+            | Self::Damaged { .. }
+            | Self::ModelRefused(_) => 3,
             Self::AnswerPending | Self::WaitingForBatch { .. } | Self::BudgetSpent(_) => 4,
             Self::Missed { .. } => 5,
         }
     }
+}
+
+/// What a folder is that holds no suite, and what to do.
+fn without_suite(dir: &Path) -> String {
+    if dir.join(FROZEN_FILE).is_file() {
+        return "it holds a frozen one, which `recrash test` runs; name the suite that it was made of".to_owned();
+    }
+    format!("it holds no suite.json; check the folder, or make one there with `recrash run --out {}`", dir.display())
 }
 
 fn hint(source: &std::io::Error) -> &'static str {

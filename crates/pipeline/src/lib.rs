@@ -77,7 +77,7 @@ pub use tools::exporting::{ExportReport, ExportRequest, export};
 pub use tools::failing::{
     FailureRequest, MinimalOf, MinimalReport, RobustnessOf, RobustnessReport, minimal_failures, robustness_of_failures,
 };
-pub use tools::freezing::{FreezeRequest, Freezing, freeze};
+pub use tools::freezing::{FreezeRequest, Freezing, crash_types, freeze};
 pub use tools::importing::{ImportRequest, Imported, SourceFormat, import};
 pub use tools::parity::{
     Agreement, Apart, GAP_TOLERANCE_M, OpenLoop, OpenLoopLimit, OpenLoopRequest, Pair, PairOutcome, Parity,
@@ -86,7 +86,7 @@ pub use tools::parity::{
 };
 pub use tools::prompting::{Prompt, PromptRequest, prompt};
 pub use tools::reconstructing::write_reconstructions;
-pub use tools::running::run_many;
+pub use tools::running::{ask_for_situation, run_many};
 #[cfg(feature = "parquet")]
 pub use tools::sweep::{Sweep, SweepPoints, SweepRequest, SweepSummary, SweptScenario, Vary};
 pub use tools::testing::{TestRequest, read_results, test};

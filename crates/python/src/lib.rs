@@ -41,6 +41,7 @@ fn _recrash(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(reading::read_records, module)?)?;
     module.add_function(wrap_pyfunction!(suite::run_suite, module)?)?;
     module.add_function(wrap_pyfunction!(suite::suite_options, module)?)?;
+    module.add_function(wrap_pyfunction!(suite::crash_types, module)?)?;
     module.add_function(wrap_pyfunction!(batch::held_out, module)?)?;
     batch::add_constants(module)
 }

@@ -70,6 +70,19 @@ impl Run {
         self.run.failed()
     }
 
+    /// Whether it came into the situation of its record: as near as the recorded driver's crash asks; `None` where no recorded
+    /// driver crashes, and of episodes of `recrash.gym`. A run that did not, and did not fail, says nothing of the ego.
+    #[getter]
+    fn met(&self) -> Option<bool> {
+        self.run.situation_met()
+    }
+
+    /// What led to the failure, such as `braked_late`; `None` where it did not fail.
+    #[getter]
+    fn cause<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        to_python(py, &self.run.cause)
+    }
+
     /// Failures first, then odd behaviour: dicts with `kind`, `time_s`, `value`, `threshold` and `sentence`.
     #[getter]
     fn findings<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {

@@ -25,9 +25,10 @@ pub struct Scenario {
 
 #[pymethods]
 impl Scenario {
-    /// Reads and checks a scenario: the path of a file, or a dict as such a file has it.
+    /// Reads and checks a scenario: the path of a file, or a dict as such a file has it. `crash_type` is told of its crash elsewhere.
     #[classmethod]
-    fn load(_: &Bound<'_, PyType>, source: &Bound<'_, PyAny>) -> PyResult<Self> {
+    #[pyo3(signature = (source, *, crash_type=None))]
+    fn load(_: &Bound<'_, PyType>, source: &Bound<'_, PyAny>, crash_type: Option<String>) -> PyResult<Self> {
         let py = source.py();
         let read = if source.is_instance_of::<PyDict>() {
             let json = to_json(source)?;
@@ -36,8 +37,10 @@ impl Scenario {
             let path: PathBuf = source.extract()?;
             py.detach(|| read_scenario(&path))
         };
-        read.map(|(scenario, remarks)| Self::of(scenario, remarks.iter().map(ToString::to_string).collect(), None))
-            .map_err(|failed| of_library(py, &failed))
+        read.map(|(scenario, remarks)| {
+            Self::of(scenario, remarks.iter().map(ToString::to_string).collect(), crash_type)
+        })
+        .map_err(|failed| of_library(py, &failed))
     }
 
     /// Its name.
@@ -68,6 +71,12 @@ impl Scenario {
     #[getter]
     fn crash_type(&self) -> Option<String> {
         self.crash_type.clone().or_else(|| self.template())
+    }
+
+    /// Whether there is something to test: of a record whose ego was parked nobody takes over.
+    #[getter]
+    fn tested(&self) -> bool {
+        self.scenario.draft().is_tested()
     }
 
     /// Remarks on its file.
@@ -130,9 +139,10 @@ impl Scenario {
                 let judged = py.detach(|| {
                     let profile = system_profile(profile)?;
                     let simulator = host.start(name.as_deref().unwrap_or(&profile.ego), 1)?;
-                    Ok(recrash_lab::run_scenario(&self.scenario, &simulator, &profile, None)?)
+                    let run = recrash_lab::run_scenario(&self.scenario, &simulator, &profile, None)?;
+                    Ok(self.judged(run, &profile))
                 });
-                self.judged(judged.map_err(|failed: PipelineError| host.failed(py, &failed))?)
+                judged.map_err(|failed: PipelineError| host.failed(py, &failed))
             }
         }
     }
@@ -181,9 +191,10 @@ impl Scenario {
         self.crash_type.clone()
     }
 
-    /// A run of it.
-    pub fn judged(&self, run: JudgedRun) -> PyResult<Run> {
-        Ok(Run::of(run, Some(Arc::clone(&self.scenario))))
+    /// A run of it, with whether it came into the situation of its record.
+    pub fn judged(&self, mut run: JudgedRun, profile: &SystemProfile) -> Run {
+        recrash_pipeline::ask_for_situation(&self.scenario, &mut run, profile);
+        Run::of(run, Some(Arc::clone(&self.scenario)))
     }
 
     /// Runs it with a Python object in the ego's seat.
@@ -195,7 +206,7 @@ impl Scenario {
         Runner::new().run_with(&self.scenario, &mut ego, &mut recorder)?;
         let rollout =
             recorder.finish().ok_or_else(|| error(py, Kind::Other, format!("{}: nothing was recorded", self.id())))?;
-        self.judged(py.detach(|| recrash_lab::judge(&self.scenario, rollout, &profile, None)))
+        Ok(py.detach(|| self.judged(recrash_lab::judge(&self.scenario, rollout, &profile, None), &profile)))
     }
 }
 

@@ -82,10 +82,11 @@ pub fn tune_one<'py>(
     let tuned = py.detach(|| {
         let profile = system_profile(profile)?;
         let simulator = host.start(ego.unwrap_or(&profile.ego), 1)?;
-        tune_scenario(&of.scenario, &simulator, &profile, searcher, budget, seed)
+        let tuned = tune_scenario(&of.scenario, &simulator, &profile, searcher, budget, seed)?;
+        let made = Scenario::of(tuned.scenario, Vec::new(), of.known_type());
+        let run = made.judged(tuned.run, &profile);
+        Ok((made, run, tuned.log))
     });
-    let tuned = tuned.map_err(|failed: PipelineError| of_library(py, &failed))?;
-    let made = Scenario::of(tuned.scenario, Vec::new(), of.known_type());
-    let run = made.judged(tuned.run)?;
-    Ok((made, run, to_python(py, &tuned.log)?))
+    let (made, run, log) = tuned.map_err(|failed: PipelineError| of_library(py, &failed))?;
+    Ok((made, run, to_python(py, &log)?))
 }

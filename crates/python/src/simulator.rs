@@ -2,12 +2,14 @@
 
 use crate::errors::{input, of_library};
 use crate::host::Host;
+use crate::run::Run;
 use crate::scenario::{Scenario, system_profile};
 use pyo3::prelude::*;
 use recrash_model::profile::SystemProfile;
 use recrash_model::run::JudgedRun;
 use recrash_pipeline::{PipelineError, run_many};
 use std::path::PathBuf;
+use std::sync::Arc;
 
 /// A simulator with an ego in it, for many scenarios: what takes seconds to start (MetaDrive, an ego that is a program) is started
 /// once.
@@ -59,7 +61,7 @@ impl Simulator {
         let done = py.detach(|| run_many(&all, &self.simulator, &self.profile, self.threads));
         let done = done.map_err(|failed| of_library(py, &failed))?;
         let result = |(scenario, done): (&&Scenario, Result<JudgedRun, PipelineError>)| match done {
-            Ok(run) => Ok(Bound::new(py, scenario.judged(run)?)?.into_any()),
+            Ok(run) => Ok(Bound::new(py, Run::of(run, Some(Arc::clone(&scenario.scenario))))?.into_any()),
             Err(failed) => Ok(self.host.failed(py, &failed).into_value(py).into_bound(py).into_any()),
         };
         each.iter().zip(done).map(result).collect()

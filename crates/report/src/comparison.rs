@@ -25,12 +25,6 @@ enum Standing<'a> {
     Error(&'a str),
 }
 
-/// Whether no run of a test came into the situation of its record.
-fn never_met(test: &TestResult) -> bool {
-    let mut outcomes = test.runs.iter().filter_map(|run| run.outcome.as_ref()).peekable();
-    outcomes.peek().is_some() && outcomes.all(|outcome| outcome.met == Some(false))
-}
-
 /// How a test stands: against a baseline where there is one, by itself else.
 fn standing<'a>(test: &'a TestResult, compared: Option<&'a Compared>) -> Standing<'a> {
     let why = || test.telling().and_then(|run| run.why.as_deref()).unwrap_or("no reason is told");
@@ -38,7 +32,7 @@ fn standing<'a>(test: &'a TestResult, compared: Option<&'a Compared>) -> Standin
         (TestVerdict::NotRun, _) => Standing::Error(why()),
         (_, Some(Change::Broken)) => Standing::Red("broken"),
         (_, Some(Change::Worse)) => Standing::Red("worse"),
-        (TestVerdict::Passed, _) if never_met(test) => {
+        (TestVerdict::Passed, _) if test.never_met() => {
             Standing::Known("never in the situation of its record: no failure, and no pass".to_owned())
         }
         (TestVerdict::Passed, _) => Standing::Passed,
@@ -216,14 +210,14 @@ fn sentences(test: &TestResult) -> String {
     lines.join("\n")
 }
 
-/// Workflow commands of GitHub: an error for what is red, a warning for what is flaky or not run, and one line for all.
+/// Workflow commands of GitHub: an error for what is red, a warning for what is flaky, not met or not run, and one line for all.
 pub fn github(comparison: &Comparison) -> String {
     let mut text = String::new();
     let escaped = |text: &str| text.replace('%', "%25").replace('\r', "%0D").replace('\n', "%0A");
     let property = |text: &str| escaped(text).replace(':', "%3A").replace(',', "%2C");
     let levels: [(&str, &[Change], usize); 3] = [
         ("error", &[Change::Broken, Change::Worse], ANNOTATED),
-        ("warning", &[Change::Flaky, Change::NotRun], ANNOTATED),
+        ("warning", &[Change::Flaky, Change::Unmet, Change::NotRun], ANNOTATED),
         // One is kept for the line about all.
         ("notice", &[Change::Fixed], ANNOTATED - 1),
     ];

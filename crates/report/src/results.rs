@@ -167,8 +167,11 @@ fn measured(case: &CaseRow, run: &RunRow, tells: bool) -> Vec<String> {
     let kinds: Vec<&str> = run.finding_kinds().into_iter().map(|kind| kind.label()).collect();
     let named = |checks: Vec<&Check>| checks.iter().map(|check| check.kind.label()).collect::<Vec<_>>().join("; ");
     vec![
-        // Nobody's crash has no record to be true to.
-        case.faithful().filter(|_| tells).map_or("", |_| run.faithful().label()).to_owned(),
+        // Nobody's crash has no record to be true to; a test is held against the situation alone.
+        case.faithful()
+            .filter(|_| tells && run.situation_met().is_none())
+            .map_or("", |_| run.faithful().label())
+            .to_owned(),
         named(run.verdict.failures().collect()),
         named(run.verdict.unchecked().collect()),
         kinds.join("; "),

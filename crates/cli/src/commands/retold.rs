@@ -184,11 +184,15 @@ fn result(summary: &Summary) {
     let not_run = count(&|case| Verdict::of(case) == Verdict::NotRun);
     println!("\n{} {} fails, where it came into the situation of the record,", bold("result:"), summary.ego);
     sentence(&format!("  as reconstructed, from the handover on: {}", failures(&first)));
-    sentence(&format!(
-        "  after tuning within what reports leave open: {}; {} by tuning alone",
-        failures(&last),
-        count(&CaseSummary::found_by_tuning)
-    ));
+    // With a budget of one point nothing was searched.
+    let searched = summary.cases.iter().any(|case| case.points > 1);
+    if searched {
+        sentence(&format!(
+            "  after tuning within what reports leave open: {}; {} by tuning alone",
+            failures(&last),
+            count(&CaseSummary::found_by_tuning)
+        ));
+    }
     let outside = count(&|case| case.situation_met == Some(false) && case.tuned.as_ref().is_some_and(|run| run.failed));
     let also = |before: &str, count: usize, words: &str| {
         if count > 0 { format!("{before}{count} {words}") } else { String::new() }
@@ -216,7 +220,8 @@ fn result(summary: &Summary) {
         let of_all = also(", of all ", causes.iter().map(|(_, count)| count).sum(), "failures");
         let of_all = if outside > 0 { of_all } else { String::new() };
         let causes = causes.iter().map(|(cause, count)| (cause.label(), *count)).collect();
-        sentence(&format!("after tuning, by cause{of_all}: {}", listed(causes)));
+        let when = if searched { "after tuning, by cause" } else { "by cause" };
+        sentence(&format!("{when}{of_all}: {}", listed(causes)));
         let classes = summary.failure_classes().into_iter().map(|(class, count)| (class.label(), count)).collect();
         sentence(&format!("  other egos in the same scenario: {}", listed(classes)));
         let brackets = summary.brackets().into_iter().map(|(bracket, count)| (bracket.label(), count)).collect();

@@ -157,11 +157,11 @@ fn show(summary: &Summary, dir: &Path) {
             println!("  {} {}: {failure}", yellow("not run:"), case.id);
         } else if let Some(run) = case.tuned.as_ref() {
             match run.faithful {
-                Answer::Yes => {}
-                Answer::No => {
+                None | Some(Answer::Yes) => {}
+                Some(Answer::No) => {
                     println!("  {} {}: {}", yellow("not faithful:"), case.id, run.unfaithful.join("; "));
                 }
-                Answer::Unchecked => {
+                Some(Answer::Unchecked) => {
                     let why =
                         if run.unchecked.is_empty() { "nothing is told".into() } else { run.unchecked.join(", ") };
                     println!("  {} {}: {why}", yellow("not all checked:"), case.id);

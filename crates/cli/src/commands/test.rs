@@ -223,29 +223,30 @@ fn annotate(args: &CiArgs, comparison: Option<&Comparison>, output: Output) {
 /// Prints results: counts by crash type, causes, and the worst failures.
 fn show_results(results: &TestResults) {
     output::title(&format!("{} in {}", results.ego, results.simulator));
-    let mut by_type: BTreeMap<&str, [usize; 4]> = BTreeMap::new();
+    let mut by_type: BTreeMap<&str, [usize; 5]> = BTreeMap::new();
     for test in &results.tests {
         for kind in [test.about.crash_type_label(), "all"] {
             let row = by_type.entry(kind).or_default();
             row[0] += 1;
-            row[1 + test.verdict() as usize] += 1;
+            row[match test.verdict() {
+                _ if test.never_met() => 2,
+                TestVerdict::Passed => 1,
+                TestVerdict::Failed => 3,
+                TestVerdict::NotRun => 4,
+            }] += 1;
         }
     }
-    let mut rows = table(&["crash type", "tests", "passed", "failed", "not run"]).without_first(&["not run"]);
+    let mut rows =
+        table(&["crash type", "tests", "passed", "not met", "failed", "not run"]).without_first(&["not run"]);
     let order = |kind: &str| (kind == "all", kind == "not told");
-    let mut ordered: Vec<(&str, [usize; 4])> = by_type.into_iter().collect();
+    let mut ordered: Vec<(&str, [usize; 5])> = by_type.into_iter().collect();
     ordered.sort_by_key(|(kind, _)| order(kind));
     for (kind, counts) in ordered {
         rows.add_row([Cell::new(kind)].into_iter().chain(counts.map(number)));
     }
     println!("{rows}");
-    let never_met = |test: &&TestResult| {
-        let met = test.telling().and_then(|run| run.outcome.as_ref()).and_then(|outcome| outcome.met);
-        test.verdict() == TestVerdict::Passed && met == Some(false)
-    };
-    let never = results.tests.iter().filter(never_met).count();
-    if never > 0 {
-        println!("{never} of the passed tests never came into the situation of their record: they say nothing of it");
+    if results.tests.iter().any(TestResult::never_met) {
+        screen::sentence("not met: never in the situation of its record, no failure and no pass");
     }
     show_not_run(results);
     show_causes(results);
@@ -259,7 +260,7 @@ fn show_not_run(results: &TestResults) {
     let told: Vec<(&str, &str)> =
         not_run.filter_map(|test| Some((test.id.as_str(), test.telling()?.why.as_deref()?))).collect();
     for (id, why) in told.iter().take(SHOWN_NOT_RUN) {
-        println!("not run: {id}: {why}");
+        screen::sentence(&format!("not run: {id}: {why}"));
     }
     if told.len() > SHOWN_NOT_RUN {
         println!("and {} more, told by --json and --out", told.len() - SHOWN_NOT_RUN);
@@ -326,7 +327,10 @@ fn show_failures(results: &TestResults) {
         println!("and {} more, told by --json and --out", failed.len() - SHOWN);
     }
     let failures = Failures::of(failed.iter().map(|(_, outcome)| outcome.cause));
-    println!("{} failed: {failures} (STRUCK: it had stood for a second, seldom by what it drove)", failures.total());
+    screen::sentence(&format!(
+        "{} failed: {failures} (STRUCK: it had stood for a second, seldom by what it drove)",
+        failures.total()
+    ));
 }
 
 /// Whether it failed by being struck while it stood.
@@ -351,7 +355,7 @@ fn show_brackets(results: &TestResults) {
     }
     if !counts.is_empty() {
         let told: Vec<String> = counts.iter().map(|(bracket, count)| format!("{count} {}", bracket.label())).collect();
-        println!("of contacts, {REGULATION_DRIVERS}: {}", told.join(", "));
+        screen::sentence(&format!("of contacts, {REGULATION_DRIVERS}: {}", told.join(", ")));
     }
 }
 
@@ -360,7 +364,7 @@ fn show_comparison(comparison: &Comparison) {
     let [before, now] = &comparison.egos;
     output::title(&format!("{now} against {before}"));
     if comparison.suites[0] != comparison.suites[1] {
-        println!("the two are of different suites; tests that differ are told as changed");
+        screen::sentence("the two are of different suites; tests that differ are told as changed");
     }
     let used: Vec<Change> =
         Change::ALL.into_iter().filter(|change| comparison.all.changes.contains_key(change)).collect();
@@ -398,5 +402,5 @@ fn show_comparison(comparison: &Comparison) {
             println!("and {} more, told by --json and --out", changed.len() - 2 * SHOWN);
         }
     }
-    println!("{}", comparison_sentence(comparison));
+    screen::sentence(&comparison_sentence(comparison));
 }

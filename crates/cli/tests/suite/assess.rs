@@ -115,7 +115,7 @@ fn a_search_that_aims_at_severity_keeps_no_milder_contact_than_the_first() {
     let cases = summary["cases"].as_array().unwrap();
     let searched: Vec<(f64, f64)> = cases
         .iter()
-        .filter(|case| case["points"].as_u64() > Some(1) && case["first"]["faithful"] == "yes")
+        .filter(|case| case["points"].as_u64() > Some(1) && case["first"]["met"] == true)
         .map(|case| (harm(&case["first"]), harm(&case["tuned"])))
         .collect();
     // Among equal contacts odd behaviour and the distance from the record count for some tenths.

@@ -37,7 +37,7 @@ fn a_mistyped_folder_is_not_made_and_named_records_begin_a_suite() {
     let place = Place::new();
     for stage in ["select", "narrate", "design", "simulate", "tune", "triage", "report"] {
         let (code, _, error) = place.run(&[stage, "--out", "siute"]);
-        assert!(code == 2 && error.contains("there is no suite in siute"), "{stage}: {code}, {error}");
+        assert!(code == 3 && error.contains("there is no suite in siute"), "{stage}: {code}, {error}");
         assert!(!place.path("siute").exists(), "{stage}");
     }
     let selection = json(&place, &["select", "--out", "fresh", "--budget", "3", "--where", "road = highway"]);

@@ -125,12 +125,15 @@ fn verdict(base: &TestResult, new: &TestResult, level: Option<f64>) -> (Change, 
     }
     let (before, now) = (counts(base), counts(new));
     let told = |test: &TestResult, [failures, runs]: [usize; 2]| match (failures, telling(test)) {
-        (0, Some(outcome)) if outcome.met == Some(false) => "never in the situation of its record".to_owned(),
+        (0, _) if test.never_met() => "never in the situation of its record".to_owned(),
         (0, _) => "passed".to_owned(),
         (_, Some(outcome)) if runs == 1 => failed_how(outcome),
         _ => format!("failed {failures} of {runs}"),
     };
     let shares = format!("{}, now {}", told(base, before), told(new, now));
+    if base.never_met() != new.never_met() && now[0] == 0 {
+        return (Change::Unmet, shares, None);
+    }
     let p = chance(base, new);
     let all = |[failures, runs]: [usize; 2]| failures == runs;
     let none = |[failures, _]: [usize; 2]| failures == 0;

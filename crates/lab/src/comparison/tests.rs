@@ -67,10 +67,19 @@ fn a_test_is_broken_fixed_worse_better_or_the_same() {
 
 #[test]
 fn who_never_came_into_the_situation_is_not_told_to_have_passed() {
-    let mut elsewhere = run(&[], 9.0);
-    elsewhere.outcome.as_mut().unwrap().met = Some(false);
-    let comparison = compare(&results(vec![("a", vec![run(&[Contact], 0.0)])]), &results(vec![("a", vec![elsewhere])]));
+    let elsewhere = || {
+        let mut elsewhere = run(&[], 9.0);
+        elsewhere.outcome.as_mut().unwrap().met = Some(false);
+        elsewhere
+    };
+    let (pass, crash) = (|| run(&[], 5.0), || run(&[Contact], 0.0));
+    let comparison = compare(&results(vec![("a", vec![crash()])]), &results(vec![("a", vec![elsewhere()])]));
     assert_eq!(comparison.tests[0].why, "contact, now never in the situation of its record");
+    assert_eq!(comparison.tests[0].change, Change::Unmet, "a failure is not fixed by staying away");
+    assert_eq!(change(vec![elsewhere()], vec![pass()]), Change::Unmet);
+    assert_eq!(change(vec![crash(), crash()], vec![elsewhere(), pass()]), Change::Fixed, "in it once, and no failure");
+    assert_eq!(change(vec![elsewhere()], vec![crash()]), Change::Broken, "a failure that nobody knew of is red");
+    assert_eq!(change(vec![elsewhere()], vec![elsewhere()]), Change::Same);
 }
 
 #[test]

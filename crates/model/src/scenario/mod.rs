@@ -80,6 +80,13 @@ pub struct ScenarioDraft {
     pub after_contact_s: f64,
 }
 
+impl ScenarioDraft {
+    /// Whether there is something to test: of a record whose ego was parked nobody takes over.
+    pub fn is_tested(&self) -> bool {
+        self.source.origin.is_none() || self.ego.recorded.is_none() || self.ego.handover_s.is_some()
+    }
+}
+
 fn is_zero(value: &f64) -> bool {
     *value == 0.0
 }

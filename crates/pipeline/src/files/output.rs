@@ -35,7 +35,8 @@ impl Outputs {
     /// A file to be written.
     ///
     /// # Errors
-    /// It is something that is read, a file that lies in a folder that is read, another output, or a folder.
+    /// It is something that is read, a file that lies in a folder that is read, another output, or a folder; or it is to lie where
+    /// there is no folder.
     pub fn claim(&mut self, path: &Path) -> Result<Output, PipelineError> {
         let refused = |why: String| Err(PipelineError::bad_input(format!("{}: {why}", path.display())));
         let output = Output { target: Target::of(path)?, shown: path.to_owned() };
@@ -47,6 +48,11 @@ impl Outputs {
             // Two streams into one device mix, and take nothing's place.
             return Ok(output);
         };
+        // Else a long run would end in this.
+        let folder = target.parent().filter(|folder| !folder.as_os_str().is_empty());
+        if folder.is_some_and(|folder| !folder.exists()) {
+            return Err(output.failed()(std::io::Error::from(std::io::ErrorKind::NotFound)));
+        }
         if target.exists()
             && let Some(place) = target.parent().map(real)
             && let Some((folder, _)) = self.folders.iter().find(|(_, folder)| place.starts_with(folder))
@@ -288,6 +294,12 @@ mod tests {
         begun.finish().unwrap();
         assert_eq!(fs::read_to_string(&target).unwrap(), "whole");
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn where_there_is_no_folder_nothing_is_begun() {
+        let refused = Outputs::default().claim(&place().path().join("nowhere/results.json"));
+        assert!(matches!(refused, Err(PipelineError::Io { action: "write", .. })), "{refused:?}");
     }
 
     #[test]

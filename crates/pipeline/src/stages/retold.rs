@@ -15,7 +15,7 @@ use crate::suite::{Files, Stage, Suite};
 use recrash_drivers::preventability;
 use recrash_lab::{Scoring, is_sound_contact, judge_by, run_scenario, situation, triage};
 use recrash_model::account::{Account, Untold};
-use recrash_model::metrics::{Answer, Verdict};
+use recrash_model::metrics::Verdict;
 use recrash_model::run::JudgedRun;
 use recrash_model::scenario::ScenarioDraft;
 use recrash_model::selection::Cluster;
@@ -124,17 +124,11 @@ fn simulate(bench: &Bench, cluster: &Cluster) -> Result<Files, PipelineError> {
     let scenario = scenario(suite, id, &names::scenario(id))?;
     let recorded = recorded_run(suite, id, &scenario)?;
     let mut files = vec![(names::recorded_run(id), to_compact_json(&recorded))];
-    if is_tested(&scenario) {
+    if scenario.draft().is_tested() {
         let run = tested_run(suite, &scenario, bench.simulator(), &recorded)?;
         files.push((names::first_run(id), to_compact_json(&run)));
     }
     Ok(files)
-}
-
-/// Whether there is something to test: who was parked has nothing to answer for.
-fn is_tested(scenario: &Scenario) -> bool {
-    let ego = &scenario.draft().ego;
-    ego.recorded.is_none() || ego.handover_s.is_some()
 }
 
 fn recorded_run(suite: &Suite, id: &str, scenario: &Scenario) -> Result<JudgedRun, PipelineError> {
@@ -164,8 +158,8 @@ fn tune(bench: &Bench, cluster: &Cluster) -> Result<Files, PipelineError> {
     let design: DesignLog = suite.store().read_json(&names::design_log(id))?;
     let account = account(suite, id)?;
     let as_designed = design.attempts.get(design.taken).is_some_and(|taken| taken.draft == *scenario.draft());
-    let open = if as_designed && is_tested(&scenario) { open_choices(&account) } else { Vec::new() };
-    let first: JudgedRun = suite.store().read_json(&match is_tested(&scenario) {
+    let open = if as_designed && scenario.draft().is_tested() { open_choices(&account) } else { Vec::new() };
+    let first: JudgedRun = suite.store().read_json(&match scenario.draft().is_tested() {
         true => names::first_run(id),
         false => names::recorded_run(id),
     })?;
@@ -198,7 +192,7 @@ fn tune(bench: &Bench, cluster: &Cluster) -> Result<Files, PipelineError> {
     };
     let aim = suite.options().aim;
     let scoring = Scoring::of(&open, make, run, &first).aiming_at(aim);
-    let sound = is_sound_contact(&first.rollout) && first.faithful() == Answer::Yes && aim == Aim::Failure;
+    let sound = is_sound_contact(&first.rollout) && first.situation_met() == Some(true) && aim == Aim::Failure;
     let enough = |point: &TunePoint| open.is_empty() || point.number == 0 && point.score.refused.is_empty() && sound;
     let seed = case_seed(suite, cluster).child("tune");
     let options = tune_options(suite)?;
@@ -214,7 +208,7 @@ fn tune(bench: &Bench, cluster: &Cluster) -> Result<Files, PipelineError> {
 fn judge(bench: &Bench, cluster: &Cluster) -> Result<Files, PipelineError> {
     let (suite, id) = (bench.suite, &cluster.scenario_id);
     let scenario = scenario(suite, id, &names::tuned(id))?;
-    if !is_tested(&scenario) {
+    if !scenario.draft().is_tested() {
         return Ok(Vec::new());
     }
     let recorded = recorded_run(suite, id, &scenario)?;

@@ -34,8 +34,12 @@ pub struct RunSummary {
     pub failed: bool,
     /// Kinds of findings, each once, failures first.
     pub findings: Vec<String>,
-    /// Whether it is true to its record.
-    pub faithful: Answer,
+    /// Whether a system under test came into the situation of its record; absent where that was not asked of it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub met: Option<bool>,
+    /// Whether it is true to its record; absent where it is held against the situation alone.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub faithful: Option<Answer>,
     /// Facts that are not shown: what is told and what was observed.
     pub unfaithful: Vec<String>,
     /// Facts that cannot be shown.
@@ -60,7 +64,8 @@ impl RunSummary {
             preventability: run.preventability.as_ref().map(Preventability::bracket),
             failed: run.failed(),
             findings: run.finding_kinds().iter().map(|kind| kind.label().to_owned()).collect(),
-            faithful: run.faithful(),
+            met: run.situation_met(),
+            faithful: run.situation_met().is_none().then(|| run.faithful()),
             unfaithful: run.verdict.failures().map(told).collect(),
             unchecked: run.verdict.unchecked().map(|check| check.kind.label().to_owned()).collect(),
         }

@@ -266,7 +266,7 @@ impl Summary {
     pub fn tested(&self) -> [TestedRuns; 2] {
         let of = |run: fn(&CaseSummary) -> &Option<RunSummary>| {
             let runs: Vec<&RunSummary> = self.cases.iter().filter_map(|case| run(case).as_ref()).collect();
-            let met: Vec<&RunSummary> = runs.iter().copied().filter(|run| run.faithful == Answer::Yes).collect();
+            let met: Vec<&RunSummary> = runs.iter().copied().filter(|run| run.met == Some(true)).collect();
             TestedRuns {
                 ran: runs.len(),
                 met: met.len(),
@@ -300,7 +300,7 @@ impl CaseSummary {
     /// Whether the run that tells the record is true to it: the recorded driver's, or the tuned one where there is none; no
     /// answer where it was not run, or nobody's crash is told.
     pub fn faithful(&self) -> Option<Answer> {
-        self.recorded.as_ref().or(self.tuned.as_ref()).filter(|_| !self.is_told("invented")).map(|run| run.faithful)
+        self.recorded.as_ref().or(self.tuned.as_ref()).filter(|_| !self.is_told("invented"))?.faithful
     }
 
     /// Of a case.
@@ -359,7 +359,7 @@ pub(super) fn summarise(suite: &Suite, cases: &Cases, summaries: Vec<CaseSummary
 
 /// What of all readable incidents these cases cover.
 fn corpus(accounts: &AccountSet, cases: &[CaseSummary]) -> CorpusCoverage {
-    let told = |case: &CaseSummary| case.recorded.as_ref().is_some_and(|run| run.faithful != Answer::No);
+    let told = |case: &CaseSummary| case.recorded.as_ref().is_some_and(|run| run.faithful != Some(Answer::No));
     let scenarios: BTreeMap<&RecordRef, Tested> = cases
         .iter()
         .filter(|case| told(case))

@@ -136,7 +136,7 @@ fn failure(case: &CaseSummary, record: &CrashRecord) -> Option<SevereFailure> {
 
 /// What the recorded driver's crash does, where it is told with a contact of two road users.
 fn harm(case: &CaseSummary, account: &Account, record: &CrashRecord) -> Option<HarmCase> {
-    let run = case.recorded.as_ref().filter(|run| run.faithful != Answer::No)?;
+    let run = case.recorded.as_ref().filter(|run| run.faithful != Some(Answer::No))?;
     run.contact.as_ref().and(run.delta_v_mps)?;
     Some(HarmCase {
         delta_v_mps: run.harm_mps(),

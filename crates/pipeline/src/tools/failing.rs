@@ -102,7 +102,7 @@ pub struct MinimalOf {
     pub id: String,
     /// File of the stripped scenario, from the folder.
     pub scenario: String,
-    /// What it fails by, stripped; it may be another finding than at first.
+    /// What it fails by, stripped: the gravest as at first, others may have gone or come.
     pub findings: Vec<FindingKind>,
     /// File of the nearest scenario that passes.
     pub twin: Option<String>,
@@ -110,7 +110,7 @@ pub struct MinimalOf {
     pub difference: Option<String>,
     /// What was taken away or set back.
     pub taken: Vec<String>,
-    /// What is left; without any one of these it passes.
+    /// What is left; without any one of these the failure is gone.
     pub needed: Vec<Needed>,
 }
 

@@ -151,13 +151,13 @@ pub(crate) fn facts(told: &Told, scenario: &Scenario, rollout: &Rollout) -> Vec<
         }
         fact(kind, shown, expected, observed);
     }
-    for (kind, impact_mps, seen) in
-        [(CheckKind::SvSpeed, told.sv.impact_mps, &touch.ego), (CheckKind::CpSpeed, told.cp.impact_mps, &touch.other)]
+    for (kind, side, seen) in [(CheckKind::SvSpeed, &told.sv, &touch.ego), (CheckKind::CpSpeed, &told.cp, &touch.other)]
     {
-        if let Some(impact_mps) = impact_mps {
+        if let Some(told_mps) = side.impact_mps {
             let speed_mps = seen.velocity().length();
-            let close = (speed_mps - impact_mps).abs() <= 2.0_f64.max(0.25 * impact_mps);
-            fact(kind, close, format!("{impact_mps:.1} m/s at the contact"), format!("{speed_mps:.1} m/s"));
+            let close = (speed_mps - told_mps).abs() <= 2.0_f64.max(0.25 * told_mps);
+            let of = if side.came_so { "as it came" } else { "at the contact" };
+            fact(kind, close, format!("{told_mps:.1} m/s {of}"), format!("{speed_mps:.1} m/s at the contact"));
         }
     }
     if told.pushed {

@@ -19,8 +19,8 @@ pub(super) fn side(party: &Party, kind: Option<Kind>, assumed: &mut Vec<String>,
         assumed.push("the partner is a passenger car".to_owned());
     }
     let movement = told(&party.movement);
-    let impact_mps =
-        party.speeds.iter().find(|speed| speed.value.meaning == SpeedMeaning::Impact).map(|speed| speed.value.mps);
+    let told_mps = |meaning| party.speeds.iter().find(|told| told.value.meaning == meaning).map(|told| told.value.mps);
+    let impact_mps = told_mps(SpeedMeaning::Impact);
     let state = told(&party.state);
     let slides = state.is_none() && kind.is_some_and(|kind| kind.group() == KindGroup::Object) && things::slides(party);
     let state = if slides { Some(ContactState::Moving) } else { state };
@@ -77,10 +77,12 @@ pub(super) fn side(party: &Party, kind: Option<Kind>, assumed: &mut Vec<String>,
         });
     let slows = party.acts.iter().any(|fact| matches!(fact.act, Act::Slow | Act::Stop) && !fact.after_contact);
     let slows = slows && (!stood_first || slowed_after_its_stand(party));
-    let slowed_from = (slows && !gained_last(party) && state == ContactState::Moving).then(|| {
-        let approach = party.speeds.iter().find(|speed| speed.value.meaning == SpeedMeaning::Approach);
-        Slowed(approach.map(|speed| speed.value.mps).filter(|_| !stood_first))
-    });
+    let slowed_from = (slows && !gained_last(party) && state == ContactState::Moving)
+        .then(|| Slowed(told_mps(SpeedMeaning::Approach).filter(|_| !stood_first)));
+    // "Came up from behind at 23 mph and struck it": who is told to come so fast, and of no change of speed, struck it so fast.
+    let steady =
+        state == ContactState::Moving && turning == Turning::No && !stood_first && !slows && !gained_last(party);
+    let came_mps = told_mps(SpeedMeaning::Approach).filter(|_| who == "partner" && steady && impact_mps.is_none());
     // Of somebody on foot, an animal or a thing the state says enough.
     let rides = |kind: Kind| matches!(kind, Kind::ScooterRider | Kind::Skateboarder);
     let drives = kind.is_none_or(|kind| {
@@ -148,7 +150,8 @@ pub(super) fn side(party: &Party, kind: Option<Kind>, assumed: &mut Vec<String>,
             .filter(|z| !matches!(z, ContactZone::Top | ContactZone::Bottom))
             .collect(),
         manner: manner(party),
-        impact_mps,
+        impact_mps: impact_mps.or(came_mps),
+        came_so: came_mps.is_some(),
         speed_mps: 0.0,
         lane: told(&party.lane),
         control: control(party),

@@ -100,6 +100,8 @@ pub(crate) struct Side {
     pub(crate) manner: Option<Manner>,
     /// Speed at the contact, where told. [m/s]
     pub(crate) impact_mps: Option<f64>,
+    /// That is told of how it came.
+    pub(crate) came_so: bool,
     /// Speed at the contact that is staged. [m/s]
     pub(crate) speed_mps: f64,
     pub(crate) lane: Option<LaneWord>,

@@ -123,7 +123,10 @@ struct Column {
 pub fn check_driver(request: &CheckDriverRequest, progress: &dyn Progress) -> Result<DriverCheck, PipelineError> {
     const STAGE: &str = "check-driver";
     let simulator = match &request.ego {
-        Some(ego) => Some(start_simulator(SimulatorKind::Native, ego, Path::new(""), 1, request.patience)?),
+        Some(ego) => {
+            let programs = rayon::current_num_threads();
+            Some(start_simulator(SimulatorKind::Native, ego, Path::new(""), programs, request.patience)?)
+        }
         None => None,
     };
     must_be_free(&request.out, Some(CHECK_FILE))?;
@@ -133,12 +136,15 @@ pub fn check_driver(request: &CheckDriverRequest, progress: &dyn Progress) -> Re
     let mut grids = Vec::new();
     let mut csv =
         "grid,driver,ego_kmh,other_kmh,gap_m,lateral_mps,deceleration_g,verdict,ego_mps,other_mps\n".to_owned();
-    progress.event(ProgressEvent::Started { stage: STAGE, units: Grid::ALL.len() + 1 });
-    for grid in Grid::ALL {
-        let scenarios = spread(grid.scenarios(), request.every);
+    let all = Grid::ALL.map(|grid| (grid, spread(grid.scenarios(), request.every)));
+    // An ego takes its time in each scenario, the reference drivers in none.
+    let runs = if simulator.is_some() { all.iter().map(|(_, scenarios)| scenarios.len()).sum() } else { 0 };
+    progress.event(ProgressEvent::Started { stage: STAGE, units: runs + Grid::ALL.len() + 1 });
+    for (grid, scenarios) in all {
         let mut columns = references(grid, &scenarios);
         if let Some(simulator) = &simulator {
-            columns.push(ego(&**simulator, &scenarios)?);
+            let driven = || progress.event(ProgressEvent::Advanced { stage: STAGE, unit: grid.name(), skipped: false });
+            columns.push(ego(&**simulator, &scenarios, driven)?);
         }
         for column in &columns {
             grids.push(count(grid, &scenarios, column, &columns));
@@ -180,8 +186,9 @@ fn references(grid: Grid, scenarios: &[Concrete]) -> Vec<Column> {
         .collect()
 }
 
-fn ego(simulator: &dyn Simulator, scenarios: &[Concrete]) -> Result<Column, PipelineError> {
-    let verdicts = scenarios.par_iter().map(|scenario| run(simulator, scenario)).collect::<Result<_, _>>()?;
+fn ego(simulator: &dyn Simulator, scenarios: &[Concrete], driven: impl Fn() + Sync) -> Result<Column, PipelineError> {
+    let run = |scenario| run(simulator, scenario).inspect(|_| driven());
+    let verdicts = scenarios.par_iter().map(run).collect::<Result<_, _>>()?;
     Ok(Column { driver: simulator.ego().to_owned(), is_reference: false, verdicts })
 }
 

@@ -75,11 +75,19 @@ pub fn compare_files(base: &Path, new: &Path) -> Result<(TestResults, Comparison
 /// Compares results with a baseline.
 ///
 /// # Errors
-/// The two have no test in common: nothing would be compared, and nothing be red.
+/// The two have no test in common, or none of those could be run for the baseline: nothing would be compared, and nothing be red.
 pub fn compare_with(base: &TestResults, new: &TestResults) -> Result<Comparison, PipelineError> {
     let comparison = compare(base, new);
-    if comparison.comparable() > 0 || new.tests.is_empty() {
+    let comparable = comparison.comparable().collect::<Vec<_>>();
+    if comparable.iter().any(|test| test.ran_before()) || new.tests.is_empty() {
         return Ok(comparison);
+    }
+    if let Some(first) = comparable.first() {
+        return Err(PipelineError::bad_input(format!(
+            "there is nothing to compare: no test could be run for the baseline ({}: {}); make the baseline again with an ego \
+             that runs",
+            first.id, first.why,
+        )));
     }
     Err(PipelineError::bad_input(format!(
         "there is nothing to compare: no test of suite {} is in suite {} with the same scenario; make new results of the \

@@ -4,6 +4,7 @@ mod open;
 mod sources;
 
 pub(crate) use open::Opened;
+pub use sources::crash_types;
 
 use crate::error::PipelineError;
 use crate::files::folders::must_be_free;
@@ -12,16 +13,15 @@ use crate::files::paths;
 use crate::files::store::{Store, sha256, write_suite_file};
 use crate::profiles::load_profile;
 use recrash_model::account::Account;
-use recrash_model::frozen::{About, FROZEN_FORMAT, FrozenFile, FrozenSuite, FrozenTest, Provenance, scenario_content};
+use recrash_model::frozen::{
+    About, FROZEN_FILE, FROZEN_FORMAT, FrozenFile, FrozenSuite, FrozenTest, Provenance, scenario_content,
+};
 use recrash_model::metrics::Expectation;
 use recrash_roads::Scenario;
 use serde::Serialize;
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
-
-/// What a frozen suite is.
-pub(crate) const FROZEN_FILE: &str = "frozen.json";
 
 /// What to freeze, and where to.
 #[derive(Debug, Clone, PartialEq, Eq)]

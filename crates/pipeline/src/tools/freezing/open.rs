@@ -1,12 +1,13 @@
 //! A frozen suite, opened: every file of it is as it was frozen.
 
-use super::{FROZEN_FILE, hash_of};
+use super::hash_of;
 use crate::error::PipelineError;
 use crate::files::store::{is_plain_name, read_text};
 use crate::reading::documents::read_document;
 use crate::reading::scenarios::{not_runnable, scenario_from};
+use crate::suite::SUITE_FILE;
 use rayon::prelude::*;
-use recrash_model::frozen::{FROZEN_FORMAT, FrozenSuite, FrozenTest, scenario_content};
+use recrash_model::frozen::{FROZEN_FILE, FROZEN_FORMAT, FrozenSuite, FrozenTest, scenario_content};
 use recrash_roads::{MAX_SCENARIO_BYTES, Scenario};
 use std::path::Path;
 
@@ -25,10 +26,13 @@ impl Opened {
     pub fn read(dir: &Path) -> Result<Self, PipelineError> {
         let list = dir.join(FROZEN_FILE);
         if !list.is_file() {
-            return Err(PipelineError::bad_input(format!(
-                "{}: there is no {FROZEN_FILE} in it, so it is no frozen suite; make one with `recrash freeze`",
-                dir.display()
-            )));
+            let why = match dir.join(SUITE_FILE).is_file() {
+                true => format!("it is a suite; freeze it first: `recrash freeze {} --out nightly`", dir.display()),
+                false => {
+                    format!("there is no {FROZEN_FILE} in it, so it is no frozen suite; `recrash freeze` makes one")
+                }
+            };
+            return Err(PipelineError::bad_input(format!("{}: {why}", dir.display())));
         }
         let suite: FrozenSuite = read_document(&list, "frozen suite", FROZEN_FORMAT)?;
         let bad = |why: String| PipelineError::bad_input(format!("{}: {why}", list.display()));

@@ -4,12 +4,13 @@ use super::{FreezeRequest, Test};
 use crate::error::PipelineError;
 use crate::files::json::from_json;
 use crate::files::store::{io, read_text};
+use crate::reading::documents::read_document;
 use crate::reading::scenarios::read_scenario;
 use crate::suite::Suite;
 use crate::suite::names;
 use recrash_agents::expectation;
 use recrash_model::account::{Account, CrashType, told};
-use recrash_model::frozen::{About, Provenance};
+use recrash_model::frozen::{About, FROZEN_FILE, FROZEN_FORMAT, FrozenSuite, Provenance};
 use recrash_model::narrative::Narrative;
 use recrash_model::record::{RecordRef, RecordSet};
 use recrash_model::selection::Selection;
@@ -34,7 +35,7 @@ pub(super) struct Gathered {
 pub(super) fn gather(request: &FreezeRequest) -> Result<Gathered, PipelineError> {
     let mut gathered = Gathered { tests: Vec::new(), profile: request.default_profile.clone(), left_out: Vec::new() };
     for source in &request.sources {
-        if source.join(super::FROZEN_FILE).is_file() {
+        if source.join(FROZEN_FILE).is_file() {
             let why = "it is a frozen suite already; it is tested as it is, and its folder `scenarios` holds its scenario files";
             return Err(PipelineError::bad_input(format!("{}: {why}", source.display())));
         }
@@ -95,6 +96,36 @@ fn of_suite(dir: &Path, tuned: bool, gathered: &mut Gathered) -> Result<(), Pipe
     Ok(())
 }
 
+/// Crash types of the scenarios that a folder holds, by their ids: of a frozen suite, or of one by accounts. What is no suite tells
+/// none.
+///
+/// # Errors
+/// The folder's list of them cannot be read.
+pub fn crash_types(folder: &Path) -> Result<BTreeMap<String, CrashType>, PipelineError> {
+    let list = folder.join(FROZEN_FILE);
+    if list.is_file() {
+        let suite: FrozenSuite = read_document(&list, "frozen suite", FROZEN_FORMAT)?;
+        return Ok(suite.tests.into_iter().filter_map(|test| Some((test.id, test.about.crash_type?))).collect());
+    }
+    if !folder.join(crate::suite::SUITE_FILE).is_file() {
+        return Ok(BTreeMap::new());
+    }
+    let suite = Suite::look(folder)?;
+    let store = suite.store();
+    if !store.path(names::SELECTION).exists() {
+        return Ok(BTreeMap::new());
+    }
+    let selection: Selection = store.read_json(names::SELECTION)?;
+    let mut types = BTreeMap::new();
+    for id in selection.clusters.into_iter().map(|cluster| cluster.scenario_id) {
+        if store.path(&names::account(&id)).exists() {
+            let account: Account = store.read_json(&names::account(&id))?;
+            types.extend(told(&account.crash_type).map(|kind| (id, kind)));
+        }
+    }
+    Ok(types)
+}
+
 /// Whose crash an account tells.
 fn about_account(account: &Account) -> About {
     About {
@@ -110,11 +141,9 @@ impl Gathered {
     /// Takes a test, unless there is nothing to test: of a record whose ego was parked, nobody takes over.
     fn add(&mut self, test: Test) {
         let draft = test.scenario.draft();
-        let of_record = test.account.is_some() || draft.source.origin.is_some();
-        if of_record && draft.ego.recorded.is_some() && draft.ego.handover_s.is_none() {
-            self.left_out.push(format!("{}: its ego was parked, so there is nothing to test", draft.id));
-        } else {
-            self.tests.push(test);
+        match draft.is_tested() {
+            true => self.tests.push(test),
+            false => self.left_out.push(format!("{}: its ego was parked, so there is nothing to test", draft.id)),
         }
     }
 }

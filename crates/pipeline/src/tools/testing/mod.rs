@@ -10,18 +10,18 @@ use crate::simulators::external::Patience;
 use crate::simulators::{Simulator, SimulatorKind, start_simulator};
 use crate::suite::{refuse_untrusted, thread_pool};
 use crate::tools::freezing::Opened;
+use crate::tools::running::recorded_crash;
 use rayon::prelude::*;
 use recrash_drivers::preventability;
 use recrash_lab::{run_scenario, situation};
 use recrash_model::Seed;
 use recrash_model::frozen::FrozenTest;
-use recrash_model::metrics::{CheckResult, FindingKind};
+use recrash_model::metrics::CheckResult;
 use recrash_model::profile::SystemProfile;
 use recrash_model::results::{RESULTS_FORMAT, TestOutcome, TestResult, TestResults, TestRun, TestVerdict};
 use recrash_model::run::JudgedRun;
 use recrash_model::scenario::ScenarioDraft;
 use recrash_roads::Scenario;
-use recrash_sim::{Ego, Native};
 use std::path::{Path, PathBuf};
 
 /// Name of what is done, for progress.
@@ -163,13 +163,6 @@ fn seeded(scenario: &Scenario, number: u32) -> Result<Scenario, String> {
     }
     let refused = |list: Vec<recrash_model::Diagnostic>| list.first().map(ToString::to_string).unwrap_or_default();
     recrash_roads::check(draft).map(|checked| checked.value).map_err(refused)
-}
-
-/// The recorded driver's run, where it crashes: the situation that the ego is to come into.
-pub(crate) fn recorded_crash(scenario: &Scenario, profile: &SystemProfile) -> Option<JudgedRun> {
-    scenario.draft().ego.recorded.as_ref()?;
-    let run = run_scenario(scenario, &Native::new(Ego::Recorded), profile, None).ok()?;
-    run.finding_kinds().into_iter().any(FindingKind::is_crash).then_some(run)
 }
 
 fn run_of(test: &FrozenTest, scenario: &Scenario, recorded: Option<&JudgedRun>, bench: &Bench) -> TestRun {
