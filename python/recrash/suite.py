@@ -128,9 +128,7 @@ def runs(
     return results
 
 
-def in_tested(
-    run: Callable[[list[Scenario]], Sequence[Run | Exception]], scenarios: Sequence[Scenario]
-) -> list[Run | Exception]:
+def in_tested(run: Callable[[list[Scenario]], Sequence[Run | Exception]], scenarios: Sequence[Scenario]) -> list[Run | Exception]:
     """Run the scenarios in which there is something to test; in the places of the others stands that there is nothing."""
     tested = [each for each in scenarios if each.tested]
     done = iter(run(tested) if tested else ())

@@ -156,8 +156,8 @@ pub(crate) fn facts(told: &Told, scenario: &Scenario, rollout: &Rollout) -> Vec<
         if let Some(told_mps) = side.impact_mps {
             let speed_mps = seen.velocity().length();
             let close = (speed_mps - told_mps).abs() <= 2.0_f64.max(0.25 * told_mps);
-            let of = if side.came_so { "as it came" } else { "at the contact" };
-            fact(kind, close, format!("{told_mps:.1} m/s {of}"), format!("{speed_mps:.1} m/s at the contact"));
+            let [of, at] = if side.came_so { ["as it came", " at the contact"] } else { ["at the contact", ""] };
+            fact(kind, close, format!("{told_mps:.1} m/s {of}"), format!("{speed_mps:.1} m/s{at}"));
         }
     }
     if told.pushed {
