@@ -26,12 +26,12 @@ __all__ = [
     "Table",
     "__version__",
     "command",
+    "crash_types",
     "held_out",
     "read_accounts",
     "read_records",
     "run_suite",
     "suite_options",
-    "crash_types",
     "tune_one",
 ]
 

@@ -163,8 +163,8 @@ def test(
     observation, or a class or object with ``control(observation)`` and, if it likes, ``reset(world)`` and ``end(ending)``.
     An ego that raises fails its scenario, with ``error`` saying what and where; the rest goes on.
 
-    ``verdict`` is ``failed``, ``passed``, ``unmet`` (no failure, and never in the situation of its record: no pass) or ``not_run``,
-    as of records whose ego was parked: ``error`` says why.
+    ``verdict`` is ``failed``, ``passed``, ``unmet`` (no failure, and never in the situation of its record: no pass) or
+    ``not_run``, as of records whose ego was parked: ``error`` says why.
 
     ``simulator="metadrive"`` runs MetaDrive's own egos (``recrash.METADRIVE_EGOS``) in MetaDrive; ``python`` is the interpreter
     that has it, this one without. ``progress`` shows a bar, by itself on a terminal and in a notebook.
