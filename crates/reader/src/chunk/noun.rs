@@ -167,10 +167,11 @@ impl Chunker<'_> {
         {
             return Lead::Whole(Noun { article: draft.noun.article, ..inner }, at + 2 + length - draft.first);
         }
-        // "A Tern ADS-equipped car": who has one is told of.
+        // "A Tern ADS-equipped car": who has one is told of. "An ADS-equipped van of another company" is somebody else's.
         let equipped = matches!(self.text(at), "ads" | "av" | "autonomy") && self.text(at + 1) == "equipped";
         if equipped && self.vehicle(at + 2) {
-            (draft.subject, draft.at) = (true, at + 2);
+            let others = self.text(at + 3) == "of" && matches!(self.text(at + 4), "another" | "a");
+            (draft.subject, draft.at) = (draft.subject || !others, at + 2);
             return Lead::On;
         }
         let known = self.lexicon.longest(self.tokens, at, |meaning| {

@@ -16,7 +16,7 @@ pub(super) fn controls(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<Control>
     let mut turned_green = None;
     for (number, frame) in reading.story.frames.iter().enumerate() {
         let changes = match frame.sense {
-            Sense::LightGreen if is_of_other_lanes(reading, frame) => None,
+            Sense::LightGreen | Sense::LightRed | Sense::LightYellow if is_of_others(reading, frame) => None,
             // "waiting for the light to turn green": it is red.
             Sense::LightGreen if frame.form == Form::Base && !frame.happened() => Some(SignalState::Red),
             Sense::LightGreen if was_green(reading, frame, &all) => Some(SignalState::Green),
@@ -97,15 +97,31 @@ fn named(words: &[&str]) -> Option<(ControlDevice, Option<SignalState>, usize)> 
     })
 }
 
-/// "The signal for traffic in the next lanes turned green, and the arrow of its own stayed red": not its own.
-fn is_of_other_lanes(reading: &Reading<'_>, frame: &Frame) -> bool {
+/// "The walk signal", "the van's light", "the light for the cross traffic": somebody else's.
+fn is_of_others(reading: &Reading<'_>, frame: &Frame) -> bool {
     let sentence = reading.story.sentences[frame.sentence];
     let tokens = &reading.story.tokens;
     let word = |at: usize| tokens[at].text.as_str();
     let signal = (sentence.first..frame.first).rfind(|&at| matches!(word(at), "signal" | "light" | "lights"));
-    let for_traffic = signal.is_some_and(|at| {
-        word(at + 1) == "for" && (at + 2..frame.first).take(2).any(|at| matches!(word(at), "traffic" | "vehicles"))
-    });
+    let Some(at) = signal else { return false };
+    let before = (sentence.first..at).rev().find(|&at| word(at) != "traffic");
+    let walks = before.is_some_and(|at| matches!(word(at), "walk" | "pedestrian" | "crosswalk" | "bicycle"));
+    let owner = before.filter(|&at| word(at) == "'s" && at > sentence.first).map(|at| &tokens[at - 1]);
+    let owned = owner.is_some_and(|owner| !owner.capital && !matches!(owner.text.as_str(), "av" | "ads" | "vehicle"));
+    let cross = |word: &str| {
+        matches!(word, "cross" | "crossing" | "oncoming" | "opposing" | "opposite" | "other" | "pedestrians")
+    };
+    let of_cross = word(at + 1) == "for" && (at + 2..frame.first).take(3).any(|at| cross(word(at)));
+    walks || owned || of_cross || is_of_other_lanes(reading, frame, at)
+}
+
+/// "The signal for traffic in the next lanes turned green, and the arrow of its own stayed red": not its own.
+fn is_of_other_lanes(reading: &Reading<'_>, frame: &Frame, signal: usize) -> bool {
+    let sentence = reading.story.sentences[frame.sentence];
+    let tokens = &reading.story.tokens;
+    let word = |at: usize| tokens[at].text.as_str();
+    let for_traffic = word(signal + 1) == "for"
+        && (signal + 2..frame.first).take(2).any(|at| matches!(word(at), "traffic" | "vehicles"));
     let until = tokens.len().min(reading.until());
     let stays_red = tokens[sentence.first.min(until)..until]
         .windows(2)
@@ -165,11 +181,14 @@ pub(super) fn speeds(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<Speed>> {
     for (at, token) in tokens.iter().enumerate() {
         let joined = token.text.strip_suffix("mph").and_then(|number| number.parse::<f64>().ok());
         let unit = tokens.get(at + 1).map_or("", |next| next.text.as_str());
+        // "for 2 miles" is no speed.
+        let an_hour =
+            || tokens.get(at + 2).is_some_and(|next| matches!(next.text.as_str(), "per" | "an" | "hour" | "/"));
         let apart = token
             .text
             .parse::<f64>()
             .ok()
-            .filter(|_| token.kind == TokenKind::Number && matches!(unit, "mph" | "miles"));
+            .filter(|_| token.kind == TokenKind::Number && (unit == "mph" || unit == "miles" && an_hour()));
         let Some(mph) = joined.or(apart).filter(|mph| *mph < 200.0) else { continue };
         let last_frame = reading
             .story

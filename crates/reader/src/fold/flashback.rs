@@ -3,6 +3,7 @@
 use super::contact::Contacts;
 use crate::frame::{Frame, Story};
 use crate::lexicon::{Form, Sense};
+use crate::token::Token;
 use crate::world::SUBJECT;
 use recrash_model::account::Act;
 use std::ops::Range;
@@ -127,6 +128,14 @@ fn was_under_way(story: &Story, sentence: usize) -> bool {
     first.happened() && (bound || going)
 }
 
+/// "The tow truck had been traveling behind it", "for the police car", of one that was named before: it is in the story.
+fn is_known_vehicle(story: &Story, sentence: usize, words: &[Token]) -> bool {
+    let [first, second, ..] = words else { return false };
+    let vehicle = matches!(second.text.as_str(), "truck" | "car" | "vehicle" | "cruiser" | "suv" | "motorcycle");
+    let before = &story.tokens[..story.sentences[sentence].first];
+    vehicle && before.windows(2).any(|pair| pair[0].text == first.text && pair[1].text == second.text)
+}
+
 /// What came of the crash: harm, police, exchanges of details, who left.
 fn is_aftermath(story: &Story, sentence: usize) -> bool {
     const AFTERMATH: [&str; 22] = [
@@ -169,6 +178,8 @@ fn is_aftermath(story: &Story, sentence: usize) -> bool {
         && sense(|frame| matches!(frame.act(), Some(Act::Park | Act::PullOver)));
     after
         || parks
-        || tokens.iter().any(|token| AFTERMATH.contains(&token.text.as_str()))
+        || tokens.iter().enumerate().any(|(at, token)| {
+            AFTERMATH.contains(&token.text.as_str()) && !is_known_vehicle(story, sentence, &tokens[at..])
+        })
         || story.frames.iter().any(|frame| left(frame) || harmed(frame))
 }

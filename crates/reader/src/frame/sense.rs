@@ -51,7 +51,7 @@ fn moves_itself(parser: &Parser<'_>, verb: &Spoken<'_>, carry: &Carry) -> Option
 }
 
 /// "entered the slip lane toward northbound Elm Street": where traffic keeps right, a turn to the right. Of one that goes back the other way it
-/// is not.
+/// is not, nor on a highway, where it is a ramp.
 fn enters_a_slip_lane(parser: &Parser<'_>, verb: &Spoken<'_>, carry: &Carry) -> Option<Sense> {
     if verb.sense != Sense::Act(Act::Enter) {
         return None;
@@ -59,7 +59,8 @@ fn enters_a_slip_lane(parser: &Parser<'_>, verb: &Spoken<'_>, carry: &Carry) -> 
     let behind = &parser.tokens[verb.placed().end..];
     let clause = behind.iter().take(12).take_while(|token| token.text != "," && token.text != ".");
     let words: Vec<&str> = clause.map(|token| token.text.as_str()).collect();
-    let slip = words.windows(2).take(3).any(|pair| pair == ["slip", "lane"]);
+    let ramp = words.iter().any(|word| matches!(*word, "highway" | "freeway" | "interstate" | "expressway" | "merged"));
+    let slip = words.windows(2).take(3).any(|pair| pair == ["slip", "lane"]) && !ramp;
     let own = carry.subject.as_ref().and_then(|subject| parser.world.actors[subject.actor].heading);
     let back = own.is_some_and(|(compass, ..)| {
         let other = match compass {

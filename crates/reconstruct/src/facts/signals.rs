@@ -19,6 +19,12 @@ const AT_LINE_M: f64 = 8.0;
 /// Who is no farther before a line comes to it. [m]
 const COMES_TO_M: f64 = 40.0;
 
+/// Who rolls over the line of a yield sign no faster than this, or slower by so much than so long before, slowed for it. Assumed: what one
+/// can stop from within a car's length. [m/s], [m/s], [s]
+const ROLLS_MPS: f64 = 4.5;
+const SLOWED_BY_MPS: f64 = 1.0;
+const SLOWS_S: f64 = 3.0;
+
 /// A line is taken to be so much longer on both sides. [m]
 const BESIDE_M: f64 = 1.5;
 
@@ -103,7 +109,7 @@ pub(super) fn check(
     };
     let kept = match control.device {
         Device::StopSign {} => passage.crossed_s.is_none() || passage.stood_s.is_some(),
-        Device::YieldSign {} => true,
+        Device::YieldSign {} => passage.crossed_s.is_none_or(|at_s| passage.stood_s.is_some() || slowed(track, at_s)),
         Device::Signal { .. } => passage.crossed_s.is_none_or(|at_s| shows(at_s) != Some(Aspect::Red)),
     };
     let obeyed = match said.obeyed {
@@ -118,6 +124,12 @@ pub(super) fn check(
     };
     let result = if state && obeyed { CheckResult::Shown } else { CheckResult::NotShown };
     (result, format!("{color}at {time_s:.1} s, {did}"))
+}
+
+/// Whether who crosses a line then had slowed for it.
+fn slowed(track: &ActorTrack, crossed_s: f64) -> bool {
+    let speed = |at_s: f64| track.states[(at_s.max(0.0) / STEP_S).round() as usize].velocity().length();
+    speed(crossed_s) <= ROLLS_MPS || speed(crossed_s - SLOWS_S) - speed(crossed_s) >= SLOWED_BY_MPS
 }
 
 /// Whether somebody drives over a line while its signal is red.
