@@ -32,6 +32,7 @@ COLOURS = {
     "passed": "#009E73",
     "failed": "#D55E00",
     "not_run": "#000000",
+    "parked": "#E8E8E8",
     "unmet": "#CCCCCC",
 }
 #: What all plots share: sizes of a column of a paper, and letters that stay letters in a PDF.
@@ -250,10 +251,10 @@ def results(table: Table | Mapping[str, Sequence[Any]], *, axes: Sequence[Any] |
 def _suite_verdict(case: Mapping[str, Any], last: Mapping[str, Any] | None) -> str:
     """What the last run of a case says: a run that never came into the situation of its record and did not fail is no pass."""
     if last is None:
-        return "not_run"
+        return "not_run" if case.get("failure") else "parked"
     if last["failed"]:
         return "failed"
-    return "unmet" if case.get("situation_met") is False else "passed"
+    return "unmet" if last.get("met") is False else "passed"
 
 
 def suite(suite: Suite) -> Any:
@@ -263,7 +264,7 @@ def suite(suite: Suite) -> Any:
     last = [case.get("tuned") or case.get("first") for case in cases]
     names = [_case_type(case) for case in cases]
     verdicts = [_suite_verdict(case, each) for case, each in zip(cases, last, strict=True)]
-    words = {"passed": "passed", "failed": "failed", "unmet": "never in the situation", "not_run": "nothing to test"}
+    words = {"passed": "passed", "failed": "failed", "unmet": "never in the situation", "parked": "nothing to test", "not_run": "not run"}
     order = [each for each, _ in Counter(names).most_common()][::-1]
     counts = Counter(zip(names, verdicts, strict=True))
     with matplotlib.rc_context(STYLE):

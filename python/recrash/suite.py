@@ -161,7 +161,7 @@ def test(
 
     ``ego`` is a name (see ``recrash.EGOS``), a command (``"cmd:./my_stack"``), or a Python object: a function of an
     observation, or a class or object with ``control(observation)`` and, if it likes, ``reset(world)`` and ``end(ending)``.
-    An ego that raises fails its scenario, with ``error`` saying what and where; the rest goes on.
+    A scenario in which an ego raises is not run, with ``error`` saying what and where; the rest goes on.
 
     ``verdict`` is ``failed``, ``passed``, ``unmet`` (no failure, and never in the situation of its record: no pass) or
     ``not_run``, as of records whose ego was parked: ``error`` says why.

@@ -299,7 +299,8 @@ impl SuiteArgs {
         }
     }
 
-    /// Whether anything was typed that says nothing about one scenario file; a variable of the environment was not.
+    /// Whether anything was typed that says nothing about one scenario file, and is not as when nothing is; a variable of the environment was
+    /// not typed.
     pub fn is_about_a_suite(&self) -> bool {
         let none = Options::default();
         let typed = self.options(none.clone());
@@ -311,7 +312,12 @@ impl SuiteArgs {
             ..none
         };
         let Permissions { replace, discard_edits, reselect, .. } = self.permissions();
-        typed != of_a_file || replace || discard_edits || reselect || self.out != Path::new(DEFAULT_FOLDER)
+        typed != of_a_file || replace || discard_edits || reselect || self.names_a_folder()
+    }
+
+    /// Whether another folder than the usual one is named.
+    pub fn names_a_folder(&self) -> bool {
+        self.out != Path::new(DEFAULT_FOLDER)
     }
 
     /// What may be used of the machine.

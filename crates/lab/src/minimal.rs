@@ -27,7 +27,7 @@ const OF_EGO: [&str; 3] = ["parts", "stops", "recorded/acts"];
 /// A failing scenario and what it needs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MinimalFailure {
-    /// The scenario without what it does not need; it fails by the same kind of finding, its gravest.
+    /// The scenario without what it does not need; its gravest failure is there as before, a contact with the same one.
     pub draft: ScenarioDraft,
     /// What was taken away or set back, in order.
     pub taken: Vec<String>,
@@ -81,35 +81,45 @@ enum Outcome {
 struct Trial<'a> {
     simulator: &'a dyn Simulator,
     profile: &'a SystemProfile,
-    /// The failure that is stripped, by its gravest kind; `None` where there is none.
-    kind: Option<FindingKind>,
+    /// The failure that is stripped; `None` where there is none.
+    failure: Option<Failure>,
     runs: usize,
 }
 
 impl<'a> Trial<'a> {
     /// For the failure of a draft.
     fn of(draft: &ScenarioDraft, simulator: &'a dyn Simulator, profile: &'a SystemProfile) -> Result<Self, RunError> {
-        let mut trial = Self { simulator, profile, kind: None, runs: 0 };
-        trial.kind = trial.failures(draft)?.and_then(|kinds| kinds.into_iter().min());
+        let mut trial = Self { simulator, profile, failure: None, runs: 0 };
+        trial.failure = trial.failures(draft)?.and_then(|failures| failures.into_iter().next());
         Ok(trial)
     }
 
-    /// Kinds of failures of a draft; `None` where it may not be run.
-    fn failures(&mut self, draft: &ScenarioDraft) -> Result<Option<Vec<FindingKind>>, RunError> {
+    /// Failures of a draft, the gravest first; `None` where it may not be run.
+    fn failures(&mut self, draft: &ScenarioDraft) -> Result<Option<Vec<Failure>>, RunError> {
         self.runs += 1;
         let Ok(checked) = recrash_roads::check(draft.clone()) else { return Ok(None) };
         let run = run_scenario(&checked.value, self.simulator, self.profile, None)?;
-        Ok(Some(run.failures().collect()))
+        let mut kinds: Vec<FindingKind> = run.failures().collect();
+        kinds.sort_unstable_by_key(|kind| (!kind.is_crash(), *kind));
+        let with = |kind| run.metrics.contact.as_ref().filter(|_| kind == FindingKind::Contact).map(|it| it.id.clone());
+        Ok(Some(kinds.into_iter().map(|kind| Failure { kind, with: with(kind) }).collect()))
     }
 
     /// How it comes out; `None` where it may not be run.
     fn outcome(&mut self, draft: &ScenarioDraft) -> Result<Option<Outcome>, RunError> {
-        Ok(self.failures(draft)?.map(|kinds| match self.kind {
-            _ if kinds.is_empty() => Outcome::Passes,
-            Some(kind) if kinds.contains(&kind) => Outcome::Same,
+        Ok(self.failures(draft)?.map(|failures| match &self.failure {
+            _ if failures.is_empty() => Outcome::Passes,
+            Some(failure) if failures.contains(failure) => Outcome::Same,
             _ => Outcome::Otherwise,
         }))
     }
+}
+
+/// A failure: its kind, and with whom a contact is.
+#[derive(PartialEq, Eq)]
+struct Failure {
+    kind: FindingKind,
+    with: Option<String>,
 }
 
 /// Strips a failing scenario. `record` is the scenario as its record tells it, where this one was varied: numbers go back to it.

@@ -71,7 +71,7 @@ impl Robustness {
 }
 
 /// Whether a draft fails, and crashes; `None` where it may not be run.
-pub(crate) fn fails(
+fn fails(
     draft: ScenarioDraft,
     simulator: &dyn Simulator,
     profile: &SystemProfile,

@@ -22,7 +22,7 @@ pub enum Change {
     Better,
     /// Its runs come out differently by chance alone, as far as they can tell.
     Flaky,
-    /// On one side alone it came into the situation of its record, and it fails in none now: neither better nor worse is told.
+    /// It came into the situation of its record, or failed, and now does neither: whether it is better is not told.
     Unmet,
     /// It gave a rollout on one side only, or on neither.
     NotRun,

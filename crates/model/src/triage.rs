@@ -2,7 +2,7 @@
 
 use crate::metrics::{FindingKind, Timed};
 use crate::rollout::TerminationKind;
-use crate::run::JudgedRun;
+use crate::run::{Crash, JudgedRun};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -76,11 +76,13 @@ impl Fared {
             Some(_) if crash.is_none() => return Self::Avoids,
             None if !other.failed() => return Self::Avoids,
             Some(first) => crash == Some(first),
-            // Who touches somebody came near as well.
             None => {
-                let failures = |run: &JudgedRun| run.failures().collect::<Vec<_>>();
-                let came_near = failures(system).contains(&FindingKind::NearMiss) && crash.is_some();
-                came_near || failures(system).iter().any(|kind| failures(other).contains(kind))
+                // Who touches somebody came near as well.
+                let near = nearly_touched(system);
+                let came_near = near.is_some()
+                    && (nearly_touched(other) == near || crash.zip(near).is_some_and(|(crash, near)| crash == near));
+                let stays = |run: &JudgedRun| run.failures().any(|kind| kind == FindingKind::Stuck);
+                came_near || stays(system) && stays(other)
             }
         };
         if is_alike { Self::Alike } else { Self::Otherwise }
@@ -94,6 +96,13 @@ impl Fared {
             Self::Otherwise => "fails otherwise",
         }
     }
+}
+
+/// Whom the ego came nearest to, where it came too near to somebody.
+fn nearly_touched(run: &JudgedRun) -> Option<Crash> {
+    run.failures().find(|kind| *kind == FindingKind::NearMiss)?;
+    let gaps = run.metrics.partners.iter().map(|partner| (partner.actor, partner.min_gap.value));
+    gaps.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(actor, _)| Crash::RoadUser(actor))
 }
 
 /// How another ego fared in the scenario.

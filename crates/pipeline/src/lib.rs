@@ -66,7 +66,9 @@ pub use tools::bench_sim::{SimBench, SimBenchRequest, bench_sim};
 pub use tools::check_driver::{
     AvoidedBy, CheckDriverRequest, DriverCheck, GridCheck, LimitCheck, SpeedCheck, Survived, check_driver,
 };
-pub use tools::comparing::{CiFiles, CiOutputs, PageRequest, compare_files, compare_with, hold_to, write_page};
+pub use tools::comparing::{
+    CiFiles, CiOutputs, PageRequest, compare_files, compare_with, hold_to, must_tell, write_page,
+};
 pub use tools::doctor::{DoctorItem, DoctorRequest, State as DoctorState, doctor};
 pub use tools::embed_bench::{BenchSide, EmbedBench, EmbedBenchRequest, bench_embedding};
 pub use tools::evaluation::{

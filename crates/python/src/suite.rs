@@ -139,8 +139,7 @@ fn watched<T: Send>(
 /// Crash types of the scenarios in a folder, by their ids: of a suite by accounts, or of a frozen one.
 #[pyfunction]
 pub fn crash_types<'py>(py: Python<'py>, folder: PathBuf) -> PyResult<Bound<'py, PyAny>> {
-    let types = py.detach(|| recrash_pipeline::crash_types(&folder)).map_err(|failed| of_library(py, &failed))?;
-    to_python(py, &types)
+    to_python(py, &py.detach(|| recrash_pipeline::crash_types(&folder)))
 }
 
 /// Options of the suite in a folder.

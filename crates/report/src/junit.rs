@@ -58,7 +58,10 @@ struct Group<'a> {
 fn groups(suite: &SuiteView) -> Vec<Group<'_>> {
     let by_account = suite.accounts.is_some();
     let names = if by_account { RunNames::RETOLD_TUNED } else { RunNames::DESIGNED };
-    let tuned = suite.cases.iter().filter(|case| if by_account { case.is_tuned() } else { case.after.is_some() });
+    let tuned = suite.cases.iter().filter(|case| match by_account {
+        true => case.is_tuned() || case.untuned.is_some() && not_driven(case).is_some(),
+        false => case.after.is_some(),
+    });
     vec![
         Group { name: names.untuned, cases: suite.cases.iter().collect(), run: CaseRow::first_run },
         Group { name: names.after, cases: tuned.collect(), run: |case| case.after.as_ref() },

@@ -141,11 +141,11 @@ fn worst(cases: &[CaseSummary]) {
             Some(Answer::No) => "NO",
             None => "NOT RUN",
         };
-        let situation = match (case.situation_met, &case.recorded) {
-            (Some(true), _) => "met",
-            (Some(false), _) => "not met",
-            (None, Some(_)) => "parked",
-            (None, None) => "-",
+        let situation = match case.situation_met {
+            Some(true) => "met",
+            Some(false) => "not met",
+            None if Verdict::of(case) == Verdict::Parked => "parked",
+            None => "-",
         };
         rows.add_row(vec![
             Cell::new(Verdict::of(case).label()),

@@ -54,6 +54,11 @@ pub fn run(args: &SimulateArgs, output: Output) -> Result<(), PipelineError> {
             let what = format!("{option} is for one scenario file, and {} is a folder", scenario.display());
             return Err(PipelineError::Usage(what));
         }
+        if args.suite.names_a_folder() {
+            let what =
+                format!("the suite is named twice: {} and --out {}", scenario.display(), args.suite.out.display());
+            return Err(PipelineError::Usage(what));
+        }
         let suite = SuiteArgs { out: scenario.clone(), ..args.suite.clone() };
         return stage::run(&suite, &[Stage::Simulate], output);
     }

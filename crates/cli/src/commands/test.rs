@@ -13,7 +13,7 @@ use recrash_model::preventability::Bracket;
 use recrash_model::results::{TestOutcome, TestResult, TestResults, TestVerdict};
 use recrash_pipeline::{
     CiFiles, Outputs, PageRequest, PipelineError, SimulatorKind, TestRequest, by_cause, compare_files, compare_with,
-    comparison_sentence, github_annotations, hold_to, read_results, test, write_page,
+    comparison_sentence, github_annotations, hold_to, must_tell, read_results, test, write_page,
 };
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -44,7 +44,7 @@ const SHOWN_NOT_RUN: usize = 3;
 /// What continuous integration gets.
 #[derive(Debug, Clone, Args)]
 pub struct CiArgs {
-    /// Changes that end the command with exit code 5: broken, worse, fixed, better, flaky, not_run, changed, added, removed.
+    /// Changes that end the command with exit code 5: broken, worse, fixed, better, flaky, unmet, not_run, changed, added, removed.
     #[arg(long, value_name = "CHANGES", value_delimiter = ',', value_parser = one_change)]
     pub fail_on: Vec<Change>,
     /// Write JUnit XML; what the baseline fails as well is skipped in it.
@@ -149,6 +149,7 @@ pub fn run(args: &TestArgs, output: Output) -> Result<(), PipelineError> {
     }
     // Before anything is run: a run may take hours.
     let baseline = args.baseline.as_deref().map(read_results).transpose()?;
+    baseline.as_ref().map(must_tell).transpose()?;
     let read = args.baseline.iter().cloned().chain([args.frozen.clone()]);
     let mut outputs = Outputs::of_inputs(read);
     let files = args.ci.files().claim(&mut outputs)?;

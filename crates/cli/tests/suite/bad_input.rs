@@ -219,7 +219,7 @@ fn an_output_folder_with_other_files_in_it_is_not_touched() {
 fn a_stage_before_its_turn_names_the_one_that_is_missing() {
     let case = Case::new();
     let (code, shown) = case.run(&["design", "--out", case.out().to_str().unwrap()]);
-    assert_eq!(code, USAGE, "{shown}");
+    assert_eq!(code, BAD_INPUT, "{shown}");
     assert_says(&shown, &["recrash run --out"]);
 }
 

@@ -111,7 +111,9 @@ fn counts(test: &TestResult) -> [usize; 2] {
 fn chance(base: &TestResult, new: &TestResult) -> Option<f64> {
     let all_ran = |test: &TestResult| test.runs.iter().all(|run| run.verdict != TestVerdict::NotRun);
     let is_random = base.runs.len() > 1 || new.runs.len() > 1;
-    (is_random && base.content == new.content && all_ran(base) && all_ran(new))
+    // Who stays away from the situation does not fail less by chance.
+    let stays_away = new.never_met() && !base.never_met();
+    (is_random && !stays_away && base.content == new.content && all_ran(base) && all_ran(new))
         .then(|| exact::fisher(counts(base), counts(new)))
 }
 
@@ -131,8 +133,12 @@ fn verdict(base: &TestResult, new: &TestResult, level: Option<f64>) -> (Change, 
         _ => format!("failed {failures} of {runs}"),
     };
     let shares = format!("{}, now {}", told(base, before), told(new, now));
-    if base.never_met() != new.never_met() && now[0] == 0 {
-        return (Change::Unmet, shares, None);
+    if new.never_met() && !base.never_met() {
+        // It may behave oddly as well.
+        return match degree(base, new) {
+            (Change::Worse, why) if before[0] == 0 => (Change::Worse, why, None),
+            _ => (Change::Unmet, shares, None),
+        };
     }
     let p = chance(base, new);
     let all = |[failures, runs]: [usize; 2]| failures == runs;

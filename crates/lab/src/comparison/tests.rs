@@ -76,7 +76,11 @@ fn who_never_came_into_the_situation_is_not_told_to_have_passed() {
     let comparison = compare(&results(vec![("a", vec![crash()])]), &results(vec![("a", vec![elsewhere()])]));
     assert_eq!(comparison.tests[0].why, "contact, now never in the situation of its record");
     assert_eq!(comparison.tests[0].change, Change::Unmet, "a failure is not fixed by staying away");
-    assert_eq!(change(vec![elsewhere()], vec![pass()]), Change::Unmet);
+    assert_eq!(change(vec![pass()], vec![elsewhere()]), Change::Unmet);
+    assert_eq!(change(vec![elsewhere()], vec![pass()]), Change::Same, "it is there now, and passes");
+    let mut brakes = elsewhere();
+    brakes.outcome.as_mut().unwrap().findings = run(&[HardBraking], 9.0).outcome.unwrap().findings;
+    assert_eq!(change(vec![pass()], vec![brakes]), Change::Worse, "odd behaviour is red wherever it is");
     assert_eq!(change(vec![crash(), crash()], vec![elsewhere(), pass()]), Change::Fixed, "in it once, and no failure");
     assert_eq!(change(vec![elsewhere()], vec![crash()]), Change::Broken, "a failure that nobody knew of is red");
     assert_eq!(change(vec![elsewhere()], vec![elsewhere()]), Change::Same);

@@ -35,8 +35,7 @@ impl Outputs {
     /// A file to be written.
     ///
     /// # Errors
-    /// It is something that is read, a file that lies in a folder that is read, another output, or a folder; or it is to lie where
-    /// there is no folder.
+    /// It is something that is read, a file that lies in a folder that is read, another output, or a folder.
     pub fn claim(&mut self, path: &Path) -> Result<Output, PipelineError> {
         let refused = |why: String| Err(PipelineError::bad_input(format!("{}: {why}", path.display())));
         let output = Output { target: Target::of(path)?, shown: path.to_owned() };
@@ -48,11 +47,6 @@ impl Outputs {
             // Two streams into one device mix, and take nothing's place.
             return Ok(output);
         };
-        // Else a long run would end in this.
-        let folder = target.parent().filter(|folder| !folder.as_os_str().is_empty());
-        if folder.is_some_and(|folder| !folder.exists()) {
-            return Err(output.failed()(std::io::Error::from(std::io::ErrorKind::NotFound)));
-        }
         if target.exists()
             && let Some(place) = target.parent().map(real)
             && let Some((folder, _)) = self.folders.iter().find(|(_, folder)| place.starts_with(folder))
@@ -101,6 +95,18 @@ impl Target {
 }
 
 impl Output {
+    /// Refuses a file whose folder is not there, before the work of an hour ends in that.
+    ///
+    /// # Errors
+    /// There is no such folder.
+    pub(crate) fn in_a_folder(self) -> Result<Self, PipelineError> {
+        let folder = self.path().parent().filter(|folder| !folder.as_os_str().is_empty());
+        match folder.is_some_and(|folder| !folder.exists()) {
+            true => Err(self.failed()(std::io::Error::from(std::io::ErrorKind::NotFound))),
+            false => Ok(self),
+        }
+    }
+
     /// As it was named.
     pub fn name(&self) -> &Path {
         &self.shown
@@ -298,7 +304,7 @@ mod tests {
 
     #[test]
     fn where_there_is_no_folder_nothing_is_begun() {
-        let refused = Outputs::default().claim(&place().path().join("nowhere/results.json"));
+        let refused = Outputs::default().claim(&place().path().join("nowhere/results.json")).unwrap().in_a_folder();
         assert!(matches!(refused, Err(PipelineError::Io { action: "write", .. })), "{refused:?}");
     }
 

@@ -106,7 +106,9 @@ fn runs<'a>(case: &'a Case) -> [Option<RunOf<'a>>; 3] {
         None => [first, None, tuned],
         Some(_) => {
             let recorded = case.recorded.as_ref().map(|ran| (ran, names::scenario as fn(&str) -> String));
-            [recorded, first.filter(|_| tuned.is_some()), tuned.or(first)]
+            // Where it went no further, the first run is not the last one.
+            let stopped = case.failure.is_some();
+            [recorded, first.filter(|_| stopped || tuned.is_some()), tuned.or(first.filter(|_| !stopped))]
         }
     }
 }

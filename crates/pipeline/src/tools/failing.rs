@@ -174,7 +174,7 @@ pub fn robustness_of_failures(
     progress: &dyn Progress,
 ) -> Result<RobustnessReport, PipelineError> {
     let mut outputs = Outputs::of_inputs([request.test.frozen.clone()]);
-    let output = request.test.out.as_ref().map(|out| outputs.claim(out)).transpose()?;
+    let output = request.test.out.as_ref().map(|out| outputs.claim(out)?.in_a_folder()).transpose()?;
     let bench = Bench::set_up(&request.test)?;
     let second = confirm.then(|| second_simulator(&bench, &request.test)).transpose()?;
     let failing = failing(&bench, &request.only)?;

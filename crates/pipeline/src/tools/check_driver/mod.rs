@@ -138,8 +138,9 @@ pub fn check_driver(request: &CheckDriverRequest, progress: &dyn Progress) -> Re
         "grid,driver,ego_kmh,other_kmh,gap_m,lateral_mps,deceleration_g,verdict,ego_mps,other_mps\n".to_owned();
     let all = Grid::ALL.map(|grid| (grid, spread(grid.scenarios(), request.every)));
     // An ego takes its time in each scenario, the reference drivers in none.
-    let runs = if simulator.is_some() { all.iter().map(|(_, scenarios)| scenarios.len()).sum() } else { 0 };
-    progress.event(ProgressEvent::Started { stage: STAGE, units: runs + Grid::ALL.len() + 1 });
+    let drives = simulator.is_some();
+    let units = if drives { all.iter().map(|(_, scenarios)| scenarios.len()).sum() } else { Grid::ALL.len() };
+    progress.event(ProgressEvent::Started { stage: STAGE, units });
     for (grid, scenarios) in all {
         let mut columns = references(grid, &scenarios);
         if let Some(simulator) = &simulator {
@@ -151,10 +152,11 @@ pub fn check_driver(request: &CheckDriverRequest, progress: &dyn Progress) -> Re
             write_rows(&mut csv, grid, &scenarios, column);
         }
         files.push((format!("{}.svg", grid.name()), plot::svg(grid, &scenarios, &columns).into_bytes()));
-        progress.event(ProgressEvent::Advanced { stage: STAGE, unit: grid.name(), skipped: false });
+        if !drives {
+            progress.event(ProgressEvent::Advanced { stage: STAGE, unit: grid.name(), skipped: false });
+        }
     }
     let limits = limits::check(simulator.as_deref())?;
-    progress.event(ProgressEvent::Advanced { stage: STAGE, unit: "limits", skipped: false });
     let check = DriverCheck { format: "recrash.check-driver/1", every: request.every.max(1), grids, limits };
     files.push(("verdicts.csv".to_owned(), csv.into_bytes()));
     files.push((CHECK_FILE.to_owned(), to_json(&check)));

@@ -9,7 +9,7 @@ use crate::files::json::to_json;
 use crate::files::output::{Output, Outputs};
 use crate::tools::testing::read_results;
 use recrash_lab::comparison::compare;
-use recrash_model::comparison::{Change, Comparison};
+use recrash_model::comparison::{Change, Compared, Comparison};
 use recrash_model::results::{TestResults, TestVerdict};
 use recrash_report::comparison::{junit, markdown};
 use std::path::{Path, PathBuf};
@@ -78,22 +78,34 @@ pub fn compare_files(base: &Path, new: &Path) -> Result<(TestResults, Comparison
 /// The two have no test in common, or none of those could be run for the baseline: nothing would be compared, and nothing be red.
 pub fn compare_with(base: &TestResults, new: &TestResults) -> Result<Comparison, PipelineError> {
     let comparison = compare(base, new);
-    let comparable = comparison.comparable().collect::<Vec<_>>();
-    if comparable.iter().any(|test| test.ran_before()) || new.tests.is_empty() {
+    if comparison.comparable().any(Compared::ran_before) || new.tests.is_empty() {
         return Ok(comparison);
     }
-    if let Some(first) = comparable.first() {
-        return Err(PipelineError::bad_input(format!(
-            "there is nothing to compare: no test could be run for the baseline ({}: {}); make the baseline again with an ego \
-             that runs",
-            first.id, first.why,
-        )));
+    if comparison.comparable().next().is_some() {
+        return Err(tells_nothing(base));
     }
     Err(PipelineError::bad_input(format!(
         "there is nothing to compare: no test of suite {} is in suite {} with the same scenario; make new results of the \
          suite as it is now, and take those as the baseline",
         new.suite, base.suite
     )))
+}
+
+/// Refuses a baseline of which nothing could be run.
+///
+/// # Errors
+/// It is one.
+pub fn must_tell(baseline: &TestResults) -> Result<(), PipelineError> {
+    let ran = baseline.tests.iter().any(|test| test.verdict() != TestVerdict::NotRun);
+    if ran || baseline.tests.is_empty() { Ok(()) } else { Err(tells_nothing(baseline)) }
+}
+
+fn tells_nothing(baseline: &TestResults) -> PipelineError {
+    let why = baseline.tests.iter().flat_map(|test| &test.runs).find_map(|run| run.why.as_deref());
+    PipelineError::bad_input(format!(
+        "there is nothing to compare: no test could be run for the baseline ({}); make it again with an ego that runs",
+        why.unwrap_or("no reason is told")
+    ))
 }
 
 /// Refuses changes that must not be, and without a comparison tests that failed; in both cases those that were not run: a system

@@ -57,7 +57,8 @@ pub fn write_page(request: &PageRequest, comparison: &Comparison, output: &Outpu
     let changed: Vec<&Compared> = Change::ALL
         .into_iter()
         .filter(|change| {
-            matches!(change, Change::Broken | Change::Worse | Change::Fixed | Change::Better | Change::Flaky)
+            use Change::{Better, Broken, Fixed, Flaky, Unmet, Worse};
+            matches!(change, Broken | Worse | Fixed | Better | Flaky | Unmet)
         })
         .flat_map(|change| comparison.of(change))
         .collect();

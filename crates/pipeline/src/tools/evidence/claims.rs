@@ -24,7 +24,7 @@ pub fn all(
     all.add(
         "G1",
         "goal",
-        &format!("What {ego} does in the tests of suite {suite} is known: of {{tests}} it passes {{passed}}, fails {{failed}}, and {{not_run}} were not run."),
+        &format!("What {ego} does in the tests of suite {suite} is known: of {{tests}} it passes {{passed}} ({{passed, not met}} of these never in the situation of the record, which says nothing), fails {{failed}}, and {{not_run}} were not run."),
         &["S1", "S2", "S3", "S4"],
         &["C1", "C2", "C3", "A1"],
     );

@@ -3,7 +3,7 @@
 use super::{FreezeRequest, Test};
 use crate::error::PipelineError;
 use crate::files::json::from_json;
-use crate::files::store::{io, read_text};
+use crate::files::store::{Store, io, read_text};
 use crate::reading::documents::read_document;
 use crate::reading::scenarios::read_scenario;
 use crate::suite::Suite;
@@ -97,33 +97,22 @@ fn of_suite(dir: &Path, tuned: bool, gathered: &mut Gathered) -> Result<(), Pipe
 }
 
 /// Crash types of the scenarios that a folder holds, by their ids: of a frozen suite, or of one by accounts. What is no suite tells
-/// none.
-///
-/// # Errors
-/// The folder's list of them cannot be read.
-pub fn crash_types(folder: &Path) -> Result<BTreeMap<String, CrashType>, PipelineError> {
+/// none, nor does a file of one that cannot be read: the scenarios are there without.
+pub fn crash_types(folder: &Path) -> BTreeMap<String, CrashType> {
     let list = folder.join(FROZEN_FILE);
     if list.is_file() {
-        let suite: FrozenSuite = read_document(&list, "frozen suite", FROZEN_FORMAT)?;
-        return Ok(suite.tests.into_iter().filter_map(|test| Some((test.id, test.about.crash_type?))).collect());
+        let suite: Option<FrozenSuite> = read_document(&list, "frozen suite", FROZEN_FORMAT).ok();
+        let tests = suite.into_iter().flat_map(|suite| suite.tests);
+        return tests.filter_map(|test| Some((test.id, test.about.crash_type?))).collect();
     }
-    if !folder.join(crate::suite::SUITE_FILE).is_file() {
-        return Ok(BTreeMap::new());
-    }
-    let suite = Suite::look(folder)?;
-    let store = suite.store();
-    if !store.path(names::SELECTION).exists() {
-        return Ok(BTreeMap::new());
-    }
-    let selection: Selection = store.read_json(names::SELECTION)?;
-    let mut types = BTreeMap::new();
-    for id in selection.clusters.into_iter().map(|cluster| cluster.scenario_id) {
-        if store.path(&names::account(&id)).exists() {
-            let account: Account = store.read_json(&names::account(&id))?;
-            types.extend(told(&account.crash_type).map(|kind| (id, kind)));
-        }
-    }
-    Ok(types)
+    let store = Store::at(folder);
+    let selection: Option<Selection> = store.read_json(names::SELECTION).ok();
+    let ids = selection.into_iter().flat_map(|selection| selection.clusters).map(|cluster| cluster.scenario_id);
+    let of = |id: String| {
+        let account: Account = store.read_json(&names::account(&id)).ok()?;
+        told(&account.crash_type).map(|kind| (id, kind))
+    };
+    ids.filter_map(of).collect()
 }
 
 /// Whose crash an account tells.

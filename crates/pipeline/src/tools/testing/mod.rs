@@ -100,7 +100,7 @@ impl Bench {
 pub fn test(request: &TestRequest, progress: &dyn Progress) -> Result<TestResults, PipelineError> {
     let read = named::of_profile_and_ego(None, request.ego.as_deref());
     let mut outputs = Outputs::of_inputs(read.into_iter().chain([request.frozen.clone()]));
-    let output = request.out.as_ref().map(|out| outputs.claim(out)).transpose()?;
+    let output = request.out.as_ref().map(|out| outputs.claim(out)?.in_a_folder()).transpose()?;
     let bench = Bench::set_up(request)?;
     progress.event(ProgressEvent::Started { stage: STAGE, units: bench.opened.scenarios.len() });
     let tests = bench.threads.install(|| {
