@@ -7,8 +7,10 @@ use recrash_lab::robustness::{Robustness, robustness};
 use recrash_lab::{Scoring, run_scenario, run_scenario_in, triage};
 use recrash_model::Seed;
 use recrash_model::geometry::OrientedBox;
+use recrash_model::metrics::FindingKind;
 use recrash_model::profile::SystemProfile;
 use recrash_model::rollout::{ActorState, Substeps};
+use recrash_model::run::JudgedRun;
 use recrash_model::scenario::ScenarioDraft;
 use recrash_model::triage::{FailureClass, Fared};
 use recrash_model::tuning::Aim;
@@ -204,7 +206,7 @@ fn a_failure_is_unavoidable_only_where_every_ego_touches_the_same_one() {
         let (found, _) = triage(&scenario, &failed, &profile, &others).unwrap();
         of[FailureClass::ALL.iter().position(|&class| class == found.class).unwrap()] += 1;
         // Asked of the rollouts, and not of the findings.
-        let touched = |run: &recrash_model::run::JudgedRun| run.rollout.first_ego_contact().map(|(other, ..)| other);
+        let touched = |run: &JudgedRun| run.rollout.first_ego_contact().map(|(other, ..)| other);
         let alike =
             |ego| touched(&run_scenario(&scenario, &Native::new(ego), &profile, None).unwrap()) == touched(&failed);
         if found.class == FailureClass::Unavoidable && touched(&failed).is_some() {
@@ -226,4 +228,14 @@ fn who_touches_another_fails_otherwise() {
     assert_eq!(Fared::of(&crash, &other), Fared::Otherwise);
     other.judgement.findings.clear();
     assert_eq!(Fared::of(&crash, &other), Fared::Avoids);
+    // Who came too near to one fails alike where the other ego touches that one, and not where it crashes with anybody.
+    let nears = |run: &JudgedRun| run.first_crash().is_none() && run.failures().eq([FindingKind::NearMiss]);
+    let near = runs.find(nears).unwrap();
+    let gaps = near.metrics.partners.iter();
+    let nearest = gaps.min_by(|a, b| a.min_gap.value.total_cmp(&b.min_gap.value)).unwrap().actor;
+    let mut other = crash.clone();
+    other.judgement.metrics.contact.as_mut().unwrap().actor = nearest;
+    assert_eq!(Fared::of(&near, &other), Fared::Alike);
+    other.judgement.metrics.contact.as_mut().unwrap().actor = nearest + 1;
+    assert_eq!(Fared::of(&near, &other), Fared::Otherwise);
 }

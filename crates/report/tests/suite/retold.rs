@@ -102,6 +102,13 @@ fn an_ego_that_ends_is_an_error_and_no_skipped_test() {
     let xml = junit(&suite);
     assert!(xml.contains(" tests=\"6\" failures=\"2\" errors=\"1\" skipped=\"0\">"), "{xml}");
     assert!(xml.contains("<error type=\"not run\" message=\"simulate: the ego ended\"/>"), "{xml}");
+    // Where it ended in tuning, its first run is not its last one.
+    let mut suite = retold();
+    let case = &mut suite.cases[0];
+    (case.untuned, case.undriven) = (case.after.take(), true);
+    case.refused = Some("tune: the ego ended".into());
+    let (_, tuned) = junit(&suite).split_once("name=\"tuned\"").map(|(a, b)| (a.to_owned(), b.to_owned())).unwrap();
+    assert!(tuned.contains("<error type=\"not run\" message=\"tune: the ego ended\"/>"), "{tuned}");
 }
 
 #[test]
