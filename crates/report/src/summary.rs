@@ -90,6 +90,8 @@ pub struct Summary {
     pub parked: usize,
     /// In a suite that goes by accounts: the system under test in the crashes as reconstructed, and after tuning.
     pub tested: [Tested; 2],
+    /// Whether tuning kept another scenario than the first anywhere.
+    pub tuned: bool,
     /// Scenarios that the system under test fails after tuning alone.
     pub by_tuning: usize,
     /// Scenarios that tell their own record and whose run shows every fact told.
@@ -134,6 +136,7 @@ impl Summary {
             parked: count(&|case| case.account.is_some() && case.before.is_some() && case.after.is_none()),
             tested: [CaseRow::first_run, CaseRow::last_run]
                 .map(|run: fn(&CaseRow) -> Option<&RunRow>| Tested::of(suite.cases.iter().filter_map(run))),
+            tuned: suite.cases.iter().any(CaseRow::is_tuned),
             by_tuning: count(&CaseRow::found_by_tuning),
             own_faithful: count(&|case| tells(case, "own") && answers(case, Answer::Yes)),
             own_unfaithful: count(&|case| tells(case, "own") && answers(case, Answer::No)),

@@ -30,10 +30,10 @@ pub fn section(context: &Context) -> Markup {
                 h1 #findings-title { "Findings about the ego" }
                 p.lead {
                     b { (words::clean(&context.suite.ego, 60)) } " fails " (context.summary.failed_before) " of " (context.summary.ran)
-                    " scenarios " (untuned(context)) " and " (context.summary.failed_after) " after tuning. The other kinds are odd behaviour worth a look."
+                    " scenarios " (untuned(context)) @if context.summary.tuned { " and " (context.summary.failed_after) " after tuning" } ". The other kinds are odd behaviour worth a look."
                 }
             }
-            .panel { h2 { "Causes of the failures after tuning: one finding each" } (triage::by_cause(context)) }
+            .panel { h2 { "Causes of the failures" @if context.summary.tuned { " after tuning" } ": one finding each" } (triage::by_cause(context)) }
             .panel { h2 { "How other egos fare in the same scenarios" } (triage::by_class(context)) }
             .panel { h2 { "By kind" } (by_kind(context)) }
             .panel { h2 { "Every finding" } (every(context)) }

@@ -81,7 +81,7 @@ fn account_sentence(context: &Context, accounts: &AccountSet) -> Markup {
         @if s.cases < accounts.told.len() { b { (thousands(s.cases)) } " of them were picked. " } @else { "All of them are here. " }
         "In the crashes as reconstructed " b { (words::clean(&suite.ego, 60)) } ", from the handover on, came into the situation of its record in " b { (thousands(first.met)) " of the " (thousands(first.ran)) } " that it drove, and fails "
         b { (thousands(first.failures.total())) " of those " (thousands(first.met)) } @if first.failures.total() > 0 { ": " (manners(first.failures)) } ". A blow to an ego that stood has seldom to do with what it drove, and one from where it does not look hardly has. "
-        "After tuning within what the reports leave open it fails " b { (thousands(last.failures.total())) " of " (thousands(last.met)) } @if last.failures.total() > 0 { ": " (manners(last.failures)) } "; " (thousands(s.by_tuning)) " of them after tuning alone"
+        @if s.tuned { "After tuning within what the reports leave open it fails " b { (thousands(last.failures.total())) " of " (thousands(last.met)) } @if last.failures.total() > 0 { ": " (manners(last.failures)) } "; " (thousands(s.by_tuning)) " of them after tuning alone" } @else { "Tuning within what the reports leave open kept no other scenario" }
         @if s.parked > 0 { "; in " (thousands(s.parked)) " it was parked, and there is nothing to test" }
         ". A failure is a contact, a box gap below " (fixed(suite.profile.failure.min_gap_m, 1).unwrap_or_default())
         "\u{a0}m, leaving the road, or getting stuck."
@@ -136,20 +136,27 @@ fn account_tiles(context: &Context, accounts: &AccountSet) -> Markup {
             (tile(
                 "Ego fails, as reconstructed",
                 html! { (thousands(first.failures.total())) span.of { " of " (thousands(first.met)) } },
-                manners(first.failures),
+                html! { (manners(first.failures)) @if !s.tuned { (against_others(context)) } },
                 Some((parts::share(first.failures.total(), first.met), "bad")),
             ))
-            (tile(
-                "Ego fails, after tuning",
-                html! { (thousands(last.failures.total())) span.of { " of " (thousands(last.met)) } },
-                html! {
-                    (manners(last.failures)) "; " (thousands(s.by_tuning)) " found by tuning alone"
-                    @if !s.classes.is_empty() { ". Against other egos: " }
-                    @for (i, (class, count)) in s.classes.iter().enumerate() { @if i > 0 { ", " } (thousands(*count)) " " (class.label()) }
-                },
-                Some((parts::share(last.failures.total(), last.met), "bad")),
-            ))
+            @if s.tuned {
+                (tile(
+                    "Ego fails, after tuning",
+                    html! { (thousands(last.failures.total())) span.of { " of " (thousands(last.met)) } },
+                    html! { (manners(last.failures)) "; " (thousands(s.by_tuning)) " found by tuning alone" (against_others(context)) },
+                    Some((parts::share(last.failures.total(), last.met), "bad")),
+                ))
+            }
         }
+    }
+}
+
+/// What the failures are worth beside other egos.
+fn against_others(context: &Context) -> Markup {
+    let classes = &context.summary.classes;
+    html! {
+        @if !classes.is_empty() { ". Against other egos: " }
+        @for (i, (class, count)) in classes.iter().enumerate() { @if i > 0 { ", " } (thousands(*count)) " " (class.label()) }
     }
 }
 
