@@ -184,6 +184,8 @@ pub enum LaneWord {
     Shoulder,
     /// At the kerb, or where vehicles park.
     Curb,
+    /// The sidewalk, of who goes along it.
+    Sidewalk,
     /// On the opposite side.
     Opposing,
 }

@@ -178,4 +178,21 @@ impl Chunker<'_> {
             self.text(first) == "the" && wheel(first + 1) && self.text(first + 2) != "of" && (0..first).any(loose);
         (begins || again).then_some(first + 2)
     }
+
+    /// "several tires fell from a trailer", and "the tires", "one of the tires" further on. Behind it; whether it is one of them.
+    pub(super) fn loose_wheels(&self, first: usize) -> Option<(usize, bool)> {
+        let wheels = |at: usize| matches!(self.text(at), "wheels" | "tires");
+        let loose = |at: usize| {
+            wheels(at + 1)
+                && matches!(self.text(at), "several" | "multiple" | "two" | "three" | "some")
+                && matches!(self.text(at + 2), "fell" | "rolled" | "came" | "flew" | "bounced" | "detached")
+        };
+        if loose(first) {
+            return Some((first + 2, false));
+        }
+        let one_of = self.text(first) == "one" && self.text(first + 1) == "of";
+        let the = if one_of { first + 2 } else { first };
+        let again = self.text(the) == "the" && wheels(the + 1) && self.text(the + 2) != "of" && (0..first).any(loose);
+        again.then_some((the + 2, one_of))
+    }
 }

@@ -72,6 +72,15 @@ impl Chunker<'_> {
             let article = if self.text(first) == "the" { Article::Definite } else { Article::Indefinite };
             return Some((Noun { article, kind: Some(Kind::LooseWheel), ..Noun::unnamed() }, behind - first));
         }
+        if let Some((behind, one_of)) = self.loose_wheels(first) {
+            let article = match self.text(first) {
+                "the" => Article::Definite,
+                _ if one_of => Article::Indefinite,
+                _ => Article::None,
+            };
+            let noun = Noun { article, kind: Some(Kind::LooseWheel), several: !one_of, one_of, ..Noun::unnamed() };
+            return Some((noun, behind - first));
+        }
         // "another of our test cars".
         if self.text(first) == "another"
             && self.text(first + 1) == "of"

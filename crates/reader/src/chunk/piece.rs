@@ -85,7 +85,11 @@ impl Chunker<'_> {
             draft.piece.door |= named(&["door", "doors"]);
             draft.piece.mirror |= named(&["mirror"]);
             draft.nouns += usize::from(part == Part::Noun || named(&["side", "end"]));
-            draft.add(part);
+            // "the driver side rear passenger door": whose seat it is at, and no side.
+            let seat = self.text(at) == "passenger" && length == 1 && draft.piece.parts.contains(&Part::Left);
+            if !(seat && matches!(self.text(at + 1), "door" | "doors")) {
+                draft.add(part);
+            }
             at += length;
             read = at;
         }

@@ -27,14 +27,18 @@ pub(super) fn acts(reading: &Reading<'_>, actor: Actor) -> Vec<ActFact> {
             all.iter_mut().filter(|fact| Some(fact.act) == frame.act() && !fact.after_contact).for_each(leave_off);
         }
         let Some(act) = act_of(reading, number, frame, pushed) else { continue };
-        let side = side_of(reading, actor, frame, act).or_else(|| back_to_the_middle(reading, frame, act, &all));
+        let side =
+            side_of(reading, actor, frame, act).or_else(|| back_to_the_middle(reading, frame, act, &all)).or_else(
+                || all.last().and_then(|out| out.side).filter(|_| act == Act::Pass && went_by(reading, number, frame)),
+            );
         let after_contact = reading.is_after(number);
         let fact = ActFact {
             act,
             side,
             step: number as u32,
             after_contact,
-            begun: frame.progress == Progress::Tried || begins_to_pass(reading, actor, frame, act, side),
+            begun: frame.progress == Progress::Tried && !went_by(reading, number, frame)
+                || begins_to_pass(reading, actor, frame, act, side),
             done: is_done(reading, frame),
             after_other: None,
             manner: manner(reading, number),
@@ -73,10 +77,23 @@ pub(super) fn acts(reading: &Reading<'_>, actor: Actor) -> Vec<ActFact> {
         }
     }
     if reading.contacts.partner == Some(actor) {
+        if all.iter().all(|fact| fact.after_contact) {
+            all.splice(0..0, of_group(reading, actor));
+        }
         with_contact(reading, actor, &mut all);
     }
     told_ahead(reading, &mut all);
     all
+}
+
+/// "Several boxes fell off a truck, and it struck one of them": what all of them did before, of whom it is told of none alone.
+fn of_group(reading: &Reading<'_>, actor: Actor) -> Vec<ActFact> {
+    let known = &reading.story.world.actors[actor];
+    let Some(group) = known.group.filter(|group| *group != SUBJECT && *group != actor) else { return Vec::new() };
+    let thing = !known.acts();
+    let shared =
+        |fact: &ActFact| !fact.after_contact && (thing || matches!(fact.act, Act::Follow | Act::Enter | Act::Cross));
+    acts(reading, group).into_iter().filter(shared).collect()
 }
 
 /// "was unable to complete the lane change": what it had told of it was begun.
@@ -294,6 +311,9 @@ fn act_of(reading: &Reading<'_>, number: usize, frame: &Frame, pushed: bool) -> 
     if frame.negated {
         return not_done(reading, number, frame);
     }
+    if went_by(reading, number, frame) {
+        return Some(Act::Pass);
+    }
     if frame.progress == Progress::Wished {
         return None;
     }
@@ -306,6 +326,9 @@ fn act_of(reading: &Reading<'_>, number: usize, frame: &Frame, pushed: bool) -> 
         return Some(Act::Slow);
     }
     let act = frame.act()?;
+    if act == Act::LaneChange && is_about_to_merge(reading, number, frame) {
+        return None;
+    }
     // "Its front wheel came off": it did not fall itself.
     if act == Act::Fall && frame.who == Some(SUBJECT) && frame.with.is_some() && reading.doer(frame) == Some(SUBJECT) {
         return None;
@@ -332,9 +355,67 @@ fn act_of(reading: &Reading<'_>, number: usize, frame: &Frame, pushed: bool) -> 
         Act::SetOff if words.chars().take(24).collect::<String>().contains("enter") && moved() == Some(Act::Follow) => {
             Act::Enter
         }
+        // "shifted into reverse and began to accelerate": still backwards.
+        Act::SetOff if gains_speed(reading, number, frame) && moved() == Some(Act::Reverse) => Act::Reverse,
+        Act::SetOff if gains_speed(reading, number, frame) => Act::Accelerate,
         Act::Pass if passes_nobody(reading, frame) => Act::Follow,
         act => act,
     })
+}
+
+/// "It merged into the right lane to pass a van, and began to merge back": it had gone by the van then.
+fn went_by(reading: &Reading<'_>, number: usize, frame: &Frame) -> bool {
+    if frame.act() != Some(Act::Pass) || frame.negated || frame.who != Some(SUBJECT) {
+        return false;
+    }
+    let changes = |frame: &Frame| frame.act() == Some(Act::LaneChange) && frame.happened();
+    let main = reading.before(SUBJECT).filter(|(before, _)| *before < number).last().map(|(_, frame)| frame);
+    let out = main.filter(|main| main.sentence == frame.sentence && changes(main));
+    let Some(out) = out.filter(|_| frame.first > 0 && reading.story.tokens[frame.first - 1].text == "to") else {
+        return false;
+    };
+    let words = |frame: &Frame| {
+        let end = reading.story.sentences[frame.sentence].end.min(frame.end + 3);
+        reading.story.tokens[frame.first..end].iter().any(|token| token.text == "back")
+    };
+    let returns = |(later, frame): (usize, &Frame)| {
+        let other_side = frame.side.zip(out.side).is_some_and(|(back, out)| back != out);
+        later > number && changes(frame) && (other_side || words(frame))
+    };
+    reading.before(SUBJECT).any(returns)
+}
+
+/// "While attempting a merge onto Elm Street, it stopped to give way": from one road onto another, which is no change of lanes, and was still
+/// to come.
+fn is_about_to_merge(reading: &Reading<'_>, number: usize, frame: &Frame) -> bool {
+    let Some(who) = frame.who else { return false };
+    let tokens = &reading.story.tokens;
+    let end = reading.story.sentences[frame.sentence].end.min(frame.first + MERGE_WITHIN);
+    let clause: Vec<&str> =
+        tokens[frame.first..end].iter().map(|token| token.text.as_str()).take_while(|word| *word != ",").collect();
+    let merge = clause.iter().position(|word| word.starts_with("merg"));
+    let Some(behind) = merge.map(|merge| &clause[merge + 1..]) else { return false };
+    let road = matches!(behind.first(), Some(&("onto" | "into")))
+        && !behind.iter().any(|word| matches!(*word, "lane" | "lanes" | "traffic" | "gap" | "space" | "path" | "'s"));
+    let waits = |frame: &Frame| {
+        let stops = matches!(frame.act(), Some(Act::Stop | Act::Hold)) || frame.sense == Sense::Yield;
+        stops && frame.happened()
+    };
+    road && reading.before(who).any(|(later, frame)| later > number && waits(frame))
+}
+
+/// A merge and the road onto which it leads stand within so many words. [tokens]
+const MERGE_WITHIN: usize = 12;
+
+/// "It was turning, and began to accelerate", "shifted into reverse and began to accelerate": who moved gained speed, and did not set off.
+pub(super) fn gains_speed(reading: &Reading<'_>, number: usize, frame: &Frame) -> bool {
+    let moves = |act: Act| matches!(act, Act::Follow | Act::Turn | Act::LaneChange | Act::Accelerate | Act::Reverse);
+    let tokens = &reading.story.tokens;
+    let says = |end: usize, stem: &str| tokens[frame.first..end].iter().any(|token| token.text.starts_with(stem));
+    let last = last_act(reading, number, frame, |_| true);
+    // "It reversed, and then began to accelerate forward".
+    let forward = last == Some(Act::Reverse) && says((frame.end + 2).min(tokens.len()), "forward");
+    frame.act() == Some(Act::SetOff) && says(frame.end, "accelerat") && !forward && last.is_some_and(moves)
 }
 
 /// "It turned, and yielded to a man": who gives way to somebody and had not slowed since it drove has slowed for that.

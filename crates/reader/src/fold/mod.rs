@@ -26,11 +26,11 @@ mod whereabouts;
 
 use crate::chunk::Piece;
 use crate::frame::{Frame, Story, story};
-use crate::lexicon::Sense;
+use crate::lexicon::{Form, Sense};
 use crate::world::{Actor, Own, SUBJECT};
 use contact::Contacts;
 use recrash_model::account::{
-    ACCOUNT_FORMAT, Account, Act, Contradiction, Fact, Kind, KindGroup, Other, Source, Striker, told,
+    ACCOUNT_FORMAT, Account, Act, Contradiction, Fact, Kind, KindGroup, LaneWord, Origin, Other, Source, Striker, told,
 };
 use recrash_model::incident::Incident;
 use recrash_model::kinds::PartnerKind;
@@ -104,6 +104,7 @@ impl Reading<'_> {
             || self.back.contains(&frame.sentence)
             || self.is_told_back(frame)
             || self.is_in_vain(frame)
+            || self.avoids_what_was_met(number)
             || frame.sentence > at.sentence && frame.who != Some(SUBJECT) && self.had_before(frame.sentence)
             || frame.looks_back
             || self.is_of_having(frame) && frame.sentence == at.sentence
@@ -119,6 +120,11 @@ impl Reading<'_> {
             && frame.clause > at.clause
             && self.story.tokens[between].iter().any(|token| matches!(token.text.as_str(), "while" | "as" | "when"))
             && !self.is_of_a_sequel(number, contact);
+        // "It hit a tire, which then went under it".
+        let goes_on = frame.first > 0 && self.story.tokens[frame.first - 1].text == "then" && number > contact;
+        if goes_on && frame.described && frame.sentence == at.sentence {
+            return true;
+        }
         // "It hit the vehicle, which was stopped": told again, with what was so then.
         let retold = frame.act() == Some(Act::Hold)
             && (frame.described || frame.joint == Some(crate::chunk::Joint::While))
@@ -182,6 +188,28 @@ impl Reading<'_> {
         // Of a second one it is told what came of the first.
         let second = ["second", "another", "further", "secondary"].into_iter().any(has);
         in_vain && !second && matches!(frame.act(), Some(Act::Slow | Act::Swerve | Act::Drift))
+    }
+
+    /// "It struck a crate in the lane. A van in front of it swerved to avoid the crate": the van had come there first.
+    fn avoids_what_was_met(&self, number: usize) -> bool {
+        let (frames, tokens) = (&self.story.frames, &self.story.tokens);
+        let frame = &frames[number];
+        let Some(partner) = self.contacts.partner.filter(|_| frame.who.is_some_and(|who| who != SUBJECT)) else {
+            return false;
+        };
+        let thing = self.story.world.actors[partner].kind.map(Kind::group);
+        let lies = matches!(thing, Some(KindGroup::Object | KindGroup::Animal));
+        let first = self.story.sentences[frame.sentence].first;
+        let then = tokens[first..frame.first].iter().any(|token| matches!(token.text.as_str(), "then" | "after"));
+        let avoids = |other: &Frame| {
+            other.sentence == frame.sentence
+                && other.object == Some(partner)
+                && tokens[other.first].text.starts_with("avoid")
+        };
+        let mut behind = frames[number + 1..].iter().take(2);
+        // "kept it from changing lanes to avoid it": nobody did.
+        let did = frame.form != Form::Ing && frame.happened();
+        lies && !then && did && frame.who != Some(partner) && frame.act().is_some() && behind.any(avoids)
     }
 
     /// "Prior to the collision, it came to a stop", told behind the collision; and the sentences behind that one, up to those that name the
@@ -308,6 +336,7 @@ pub fn account(incident: &Incident) -> Option<Account> {
     if let (Some(lane), Some(partner)) = (open::oncoming_lane(&reading, &account), &mut account.partner) {
         partner.lane = Some(lane);
     }
+    along_the_sidewalk(&mut account);
     movement::movements(&reading, &mut account);
     if let Some(origin) = picture::settle(&account) {
         if let Some(told) = account.came_from.take().filter(|told| told.source.is_told()) {
@@ -335,6 +364,17 @@ pub fn account(incident: &Incident) -> Option<Account> {
         party::refine(&mut partner.zones, &record.cp_zones, "CP Contact Area");
     }
     Some(account)
+}
+
+/// Who comes across from a sidewalk along which it went is in no lane of the road.
+fn along_the_sidewalk(account: &mut Account) {
+    let along = matches!(
+        told(&account.came_from),
+        Some(Origin::Behind | Origin::Ahead | Origin::Beside { .. } | Origin::Opposite)
+    );
+    if let Some(partner) = account.partner.as_mut().filter(|_| !along) {
+        partner.lane = partner.lane.take().filter(|lane| lane.value != LaneWord::Sidewalk);
+    }
 }
 
 /// Works out again what follows from the other facts of an account, where somebody else has read some of them.
@@ -417,7 +457,10 @@ fn others(reading: &Reading<'_>) -> Vec<Other> {
             continue;
         };
         let acts = acts::acts(reading, actor);
-        let lively = kind.group() != KindGroup::Object || !acts.is_empty();
+        // "made contact with one of the tires": the others went with it.
+        let of_partner =
+            reading.contacts.partner.is_some_and(|partner| story.world.actors[partner].group == Some(actor));
+        let lively = kind.group() != KindGroup::Object || !acts.is_empty() && !of_partner;
         let (first, end) = known.kind_tokens.unwrap_or((0, 1));
         if !lively || known.mentions == 0 || kind == Kind::Curb {
             continue;

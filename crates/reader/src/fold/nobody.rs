@@ -221,9 +221,11 @@ pub(super) fn is_nobody(reading: &Reading<'_>, (first, end): (usize, usize), act
             && contact.is_some_and(|sentence| sentence > frame.sentence)
             && !inside(&["traffic", "another"])
     };
-    let headline = story.frames.iter().any(|frame| {
+    let of_others = |number: usize| reading.contacts.earlier.contains(&number);
+    let headline = story.frames.iter().enumerate().any(|(number, frame)| {
         let sentence = story.sentences[frame.sentence];
-        (frame.sense == Sense::Headline || again_told(frame)) && (sentence.first..sentence.end).contains(&first)
+        (frame.sense == Sense::Headline || again_told(frame) && !of_others(number))
+            && (sentence.first..sentence.end).contains(&first)
     });
     after || headline
 }

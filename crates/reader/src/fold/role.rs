@@ -212,13 +212,16 @@ impl Case<'_> {
         lying.then_some((Role::Initiator, "it moved into an animal that lay there"))
     }
 
-    /// Whether the sentence of the contact says that it lay there.
+    /// Whether the sentence of the contact says that it lay there, or grew.
     fn lay(&self) -> bool {
         let story = &self.reading.story;
         self.reading.contacts.first.is_some_and(|number| {
             let sentence = story.sentences[story.frames[number].sentence];
             let words = &story.tokens[sentence.first..sentence.end];
-            words.iter().any(|token| matches!(token.text.as_str(), "motionless" | "lying" | "laying" | "deceased"))
+            let lay = ["motionless", "lying", "laying", "deceased"];
+            // "a hedge growing at the wall".
+            let grows = ["growing", "overgrown", "extending", "protruding", "overhanging"];
+            words.iter().any(|token| lay.contains(&token.text.as_str()) || grows.contains(&token.text.as_str()))
         })
     }
 

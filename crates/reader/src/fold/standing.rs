@@ -1,7 +1,7 @@
 //! State at the contact as the words tell it, how long somebody had stood, and why.
 
 use super::Reading;
-use super::acts::in_headline;
+use super::acts::{gains_speed, in_headline};
 use crate::frame::Frame;
 use crate::lexicon::{Form, Lexicon, Progress, Relation, Sense};
 use crate::token::Token;
@@ -37,6 +37,7 @@ pub(super) fn state(reading: &Reading<'_>, actor: Actor) -> (Option<Fact<Contact
         if aside || act == Act::Follow && in_headline(reading, frame) {
             continue;
         }
+        let act = if gains_speed(reading, number, frame) { Act::Accelerate } else { act };
         told.add(reading, frame, act);
     }
     let hits = contact.filter(|frame| actor != SUBJECT && frame.who == Some(actor) && runs_into(reading, frame));
@@ -126,6 +127,8 @@ impl Told {
             }
             Act::Follow if self.stands() => ContactState::SettingOff,
             Act::Accelerate if self.state() == Some(ContactState::SettingOff) => ContactState::SettingOff,
+            // "shifted into reverse and began to accelerate".
+            Act::Accelerate if self.state() == Some(ContactState::Reversing) => return None,
             Act::Pushed | Act::Fall => return None,
             _ => ContactState::Moving,
         })
@@ -195,6 +198,11 @@ pub(super) fn reasons(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<StandReas
                 all.push(reading.told(reason, begins + at, begins + at + length));
             }
         }
+        if let Some((reason, at, length)) = blocked_by(reading, end)
+            && !all.iter().any(|known| known.value == reason)
+        {
+            all.push(reading.told(reason, at, at + length));
+        }
         let behind = frame.relations.iter().find_map(|(relation, to)| {
             let to = (*to).filter(|to| *to != SUBJECT)?;
             (*relation == Relation::Behind).then_some(to)
@@ -224,6 +232,21 @@ pub(super) fn reasons(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<StandReas
     all.sort_by_key(|reason| rank(reason.value));
     all.truncate(2);
     all
+}
+
+/// "stopped behind a van that was blocking the intersection": what the clause about the van, which begins before this token, tells of the way.
+fn blocked_by(reading: &Reading<'_>, behind: usize) -> Option<(StandReason, usize, usize)> {
+    let tokens = &reading.story.tokens;
+    let word = |back: usize| behind.checked_sub(back).map_or("", |at| tokens[at].text.as_str());
+    if !(matches!(word(2), "that" | "which") && matches!(word(1), "was" | "is" | "had")) {
+        return None;
+    }
+    let ends = |token: &Token| matches!(token.text.as_str(), "," | "." | "and" | "when" | "as");
+    let clause = tokens[behind..].iter().position(ends).map_or(tokens.len(), |length| behind + length);
+    let named = Lexicon::get().reasons(&tokens[behind..clause]);
+    let blocks = |reason: StandReason| matches!(reason, StandReason::BlockedJunction | StandReason::BlockedPath);
+    let most = named.into_iter().filter(|(reason, ..)| blocks(*reason)).min_by_key(|(reason, ..)| rank(*reason));
+    most.map(|(reason, at, length)| (reason, behind + at, length))
 }
 
 /// "just past the crosswalk", "short of the crosswalk": where, and for nobody.

@@ -5,7 +5,7 @@ use super::origin::{Clues, comes_against, first_relation, side_of_lane, side_of_
 use crate::frame::{Frame, zone_of};
 use crate::lexicon::{Form, Relation, Sense};
 use crate::world::{Actor, SUBJECT};
-use recrash_model::account::{Act, Fact, Kind, KindGroup, LaneWord, LeftRight, Origin, Source};
+use recrash_model::account::{Act, Compass, Fact, Kind, KindGroup, LaneWord, LeftRight, Origin, Source};
 
 /// Where somebody else is: as told; else in its lane, beside that of the subject vehicle, or by the directions of the two.
 pub(crate) fn place_of(reading: &Reading<'_>, actor: Actor) -> Option<Fact<Origin>> {
@@ -27,6 +27,7 @@ pub(crate) fn place_of(reading: &Reading<'_>, actor: Actor) -> Option<Fact<Origi
         .or_else(|| in_queue(&clues))
         .or_else(|| in_other_lane(&clues))
         .or_else(|| by_directions(&clues))
+        .or_else(|| on_oncoming_side(&clues))
         .or_else(|| at_side_of_road(&clues))
         .or_else(|| told_afterwards(&clues))
         .or_else(|| stops_in_its_lane(&clues))
@@ -103,7 +104,35 @@ fn approached(clues: &Clues<'_>) -> Option<Fact<Origin>> {
         other == number + 1 && frame.form == Form::Ing && frame.act() == Some(Act::Follow)
     };
     let along = !known.several && known.kind.is_some_and(Kind::is_vehicle) && reading.before(actor).any(drives);
-    (along && !passes).then(|| reading.told(Origin::Ahead, first, end))
+    (!passes && (along || is_queue_met(reading, number))).then(|| reading.told(Origin::Ahead, first, end))
+}
+
+/// "It approached a queue of stopped traffic ahead": whatever it was called before, it stands in front of it.
+fn is_queue_met(reading: &Reading<'_>, number: usize) -> bool {
+    let (first, end) = reading.window(number);
+    let clause = reading.story.tokens[first..end].iter().take_while(|token| token.text != ",");
+    let words: Vec<&str> = clause.map(|token| token.text.as_str()).collect();
+    let queue = words.windows(2).any(|pair| matches!(pair, ["queue" | "line", "of"])) || words.contains(&"queue");
+    queue && !words.iter().any(|word| word.starts_with("park"))
+}
+
+/// "A van was stopped on the westbound side of Elm Street", of who goes east.
+fn on_oncoming_side(clues: &Clues<'_>) -> Option<Fact<Origin>> {
+    let (reading, tokens) = (clues.reading, &clues.reading.story.tokens);
+    let (own, ..) = reading.story.world.actors[SUBJECT].heading?;
+    let stands = |frame: &Frame| matches!(frame.act(), Some(Act::Hold | Act::Stop));
+    reading.before(clues.actor).filter(|(_, frame)| stands(frame)).find_map(|(number, _)| {
+        let (first, end) = reading.window(number);
+        let at = (first..end.saturating_sub(1)).find(|&at| tokens[at + 1].text == "side")?;
+        let way = match tokens[at].text.strip_suffix("bound")? {
+            "north" => Compass::North,
+            "east" => Compass::East,
+            "south" => Compass::South,
+            "west" => Compass::West,
+            _ => return None,
+        };
+        (own.eighths_to(way) == 4).then(|| reading.told(Origin::Opposite, at, at + 2))
+    })
 }
 
 /// "a line of cars behind the truck": where the truck is.
@@ -170,17 +199,16 @@ fn at_side_of_road(clues: &Clues<'_>) -> Option<Fact<Origin>> {
     Some(Fact { value: Origin::Beside { side }, source: reading.of(frame) })
 }
 
-/// Who struck the rear of a partner that is behind came from behind too.
+/// Who struck the rear of a partner that is behind, or of another that is, came from behind too.
 fn behind_partner(reading: &Reading<'_>, actor: Actor) -> Option<Fact<Origin>> {
-    let partner = reading.contacts.partner?;
     let rear = |frame: &Frame| {
         let on = frame.on.as_ref().and_then(zone_of);
         frame.sense == Sense::RearEnd || on.is_some_and(|zone| zone.is_rear())
     };
     let struck = reading.contacts.earlier.iter().map(|number| &reading.story.frames[*number]);
-    let frame =
-        struck.into_iter().find(|frame| frame.who == Some(actor) && frame.object == Some(partner) && rear(frame))?;
-    let behind = first_relation(&Clues { reading, actor: partner }) == Some(Relation::Behind);
+    let frame = struck.into_iter().find(|frame| frame.who == Some(actor) && frame.object.is_some() && rear(frame))?;
+    let struck = frame.object.filter(|struck| ![SUBJECT, actor].contains(struck))?;
+    let behind = first_relation(&Clues { reading, actor: struck }) == Some(Relation::Behind);
     let across = by_directions(&Clues { reading, actor }).is_some();
     (behind && !across).then(|| Fact { value: Origin::Behind, source: reading.of(frame) })
 }

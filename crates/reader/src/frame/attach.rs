@@ -5,7 +5,7 @@ use super::sided;
 use crate::chunk::{Chunk, Piece, Placed, Spot};
 use crate::lexicon::{Form, Part, Relation, Sense};
 use crate::world::{Actor, SUBJECT};
-use recrash_model::account::{Act, Compass, Kind, LaneWord, LeftRight};
+use recrash_model::account::{Act, Compass, Kind, KindGroup, LaneWord, LeftRight};
 
 impl Parser<'_> {
     /// A part whose owner is not said: "made contact with the rear bumper".
@@ -131,6 +131,11 @@ impl Parser<'_> {
         let (Some(frame), Some(last), Some(to)) = (carry.frame, &carry.last, to) else { return false };
         let frame = &self.frames[frame];
         let third = to != SUBJECT && to != last.actor && frame.who != Some(to);
+        // "passed it and the car behind it": the car.
+        let second = frame.object == Some(to) && carry.governed && last.actor != SUBJECT;
+        if second && frame.act() == Some(Act::Pass) && frame.who != Some(last.actor) && last.actor != to {
+            return true;
+        }
         third && frame.act() == Some(Act::Pass) && frame.object == Some(last.actor) && last.actor != SUBJECT
     }
 
@@ -440,9 +445,12 @@ impl Parser<'_> {
         in_it || text(behind) == "to" && ["adjacent", "next"].contains(&text(behind + 1))
     }
 
-    pub(super) fn spot(&mut self, spot: Spot, carry: &mut Carry) {
+    pub(super) fn spot(&mut self, spot: Spot, placed: &Placed, carry: &mut Carry) {
         let word = carry.preposition.take();
         carry.to = false;
+        if spot == Spot::Sidewalk && matches!(word, Some("on" | "along" | "up")) {
+            self.rides_on_sidewalk(placed, carry);
+        }
         let Some(frame) = carry.frame else {
             // "From an alley a van nosed out".
             if matches!(word, Some("from" | "out")) && carry.subject.is_none() {
@@ -478,6 +486,18 @@ impl Parser<'_> {
         };
         if leaves && taken.happened() {
             taken.out_of.get_or_insert(spot);
+        }
+    }
+
+    /// "a cyclist riding along the sidewalk": that strip is its lane.
+    fn rides_on_sidewalk(&mut self, placed: &Placed, carry: &Carry) {
+        let Some(frame) = carry.frame.map(|frame| &self.frames[frame]) else { return };
+        let Some(who) = frame.who.filter(|who| *who != SUBJECT && frame.happened()) else { return };
+        let travels = matches!(frame.act(), Some(Act::Follow | Act::Pass)) && frame.sense != Sense::Parked;
+        let light = |kind: Kind| matches!(kind.group(), KindGroup::Cyclist | KindGroup::OnFoot);
+        let known = &mut self.world.actors[who];
+        if travels && known.kind.is_some_and(light) && !known.several {
+            known.lane.get_or_insert((LaneWord::Sidewalk, placed.first, placed.end));
         }
     }
 }

@@ -2,12 +2,12 @@
 
 use super::Frame;
 use super::parser::{Carry, Mention, Parser};
-use super::row::goes_on_behind_comma;
+use super::row::{another_finite, goes_on_behind_comma};
 use super::supposed::expects;
 use crate::chunk::{Article, Chunk, Joint, Placed};
 use crate::lexicon::{Form, Relation, Sense};
 use crate::world::SUBJECT;
-use recrash_model::account::{Kind, KindGroup};
+use recrash_model::account::{Act, Kind, KindGroup};
 
 impl Parser<'_> {
     pub(super) fn joint(&mut self, joint: Joint, carry: &mut Carry, behind: &[Placed]) {
@@ -49,7 +49,8 @@ impl Parser<'_> {
             Chunk::Joint(joint) => joint != Joint::And || self.tokens[placed.first].text == "and",
             _ => false,
         });
-        if joint == Joint::And && noun && (ends && carry.has_verb || std::mem::take(&mut carry.pair)) {
+        let second = noun && self.is_passed_too(carry, behind);
+        if joint == Joint::And && noun && (ends && carry.has_verb || std::mem::take(&mut carry.pair) || second) {
             carry.preposition = Some("and");
             return;
         }
@@ -108,6 +109,15 @@ impl Parser<'_> {
             // "while stopped", "before turning": of whom the clause is about, or of who is named next.
             carry.has_verb = carry.subject.is_some();
         }
+    }
+
+    /// "A van passed it and the car behind it by crossing the line": a second one that was passed, and nobody who does anything.
+    fn is_passed_too(&self, carry: &Carry, behind: &[Placed]) -> bool {
+        let placed = matches!(behind.get(1).map(|placed| &placed.chunk), Some(Chunk::Relation(_)));
+        let Some(frame) = carry.frame.map(|frame| &self.frames[frame]) else { return false };
+        let passes = frame.act() == Some(Act::Pass) && frame.object.is_some();
+        let between = self.tokens[frame.first..frame.end].iter().any(|token| token.text == "between");
+        placed && passes && !between && !carry.after_comma && !another_finite(behind, 0)
     }
 
     /// "As it slowed, there was a van passing": a clause of its own, about who is named behind it.
@@ -170,7 +180,7 @@ impl Parser<'_> {
         false
     }
 
-    pub(super) fn comma(&mut self, next: Option<&Chunk>, carry: &mut Carry) -> bool {
+    pub(super) fn comma(&mut self, comma: usize, next: Option<&Chunk>, carry: &mut Carry) -> bool {
         self.leave_place(carry);
         carry.after_comma = true;
         // "The van, unable to stop, struck it": the comma ends what did not happen.
@@ -188,6 +198,16 @@ impl Parser<'_> {
         if goes_on && carry.stranger && carry.joint.is_some() && carry.main.is_some() {
             (carry.stranger, carry.row, carry.has_verb) = (false, true, true);
             (carry.subject, carry.frame) = (carry.main.clone(), None);
+        }
+        // "It moved up once the van ahead had turned, then stopped": it stopped.
+        let then = carry.joint == Some(Joint::After) && carry.has_verb && !carry.relative;
+        if let (true, [.., before, _]) =
+            (goes_on && then && self.tokens[comma + 1].text == "then", carry.mains.as_slice())
+        {
+            let main = Some(Mention { actor: *before, piece: None, person: None, end: comma });
+            (carry.subject, carry.main) = (main.clone(), main);
+            (carry.row, carry.joint, carry.frame) = (true, None, None);
+            carry.clause += 1;
         }
         // "a van that stood facing east, across the road, attempting to turn": still of the van.
         let still = carry

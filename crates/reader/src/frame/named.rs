@@ -4,12 +4,19 @@ use super::parser::{Carry, Mention, Parser};
 use super::row::{another_finite, goes_on_behind_comma, relation_behind, transitive};
 use crate::chunk::{Article, Chunk, Joint, Noun, Piece, Placed};
 use crate::lexicon::{Adjective, Sense};
+use crate::token::number;
 use crate::world::{Actor, SUBJECT};
 use recrash_model::account::{Act, Kind, KindGroup};
+
+/// Words between a noun and those that count who stands before it: "located", "that was stopped". [tokens]
+const FARTHER_WITHIN: usize = 6;
 
 impl Parser<'_> {
     pub(super) fn noun(&mut self, noun: &Noun, all: &[Placed], at: usize, carry: &mut Carry) -> bool {
         let placed = &all[at];
+        if self.counts_between(placed) && carry.last.is_some() {
+            return true;
+        }
         let next = all.get(at + 1).map(|placed| &placed.chunk);
         let tokens = (placed.first, placed.end);
         if self.is_own_thing(noun, all, at) {
@@ -27,7 +34,9 @@ impl Parser<'_> {
             (carry.governed, carry.after_comma) = (false, false);
             return true;
         }
+        self.world.apart = self.stands_farther(placed.end);
         let actor = self.world.resolve(noun, tokens, hint);
+        self.world.apart = false;
         let verb = matches!(next, Some(Chunk::Be | Chunk::Verb(..)));
         let actor = if verb && self.is_vehicle_of_story(noun, actor, carry) { SUBJECT } else { actor };
         // "one standing passenger": the vehicle does not stand.
@@ -61,6 +70,26 @@ impl Parser<'_> {
         let person = noun.occupant.map(|(who, _)| who);
         self.mention(Mention { actor, piece: None, person, end: placed.end }, placed, carry, next);
         false
+    }
+
+    /// "two vehicles" of "a van located two vehicles behind it": how far, and nobody.
+    fn counts_between(&self, placed: &Placed) -> bool {
+        let first = placed.first;
+        self.stands_farther(first)
+            && placed.end == first + 2
+            && number(&self.tokens[first].text).is_some()
+            && matches!(self.tokens[placed.end].text.as_str(), "behind" | "back" | "ahead")
+    }
+
+    /// "a van located two vehicles behind it": others stand in between.
+    fn stands_farther(&self, end: usize) -> bool {
+        let behind: Vec<&str> =
+            self.tokens[end..].iter().take(FARTHER_WITHIN).map(|token| token.text.as_str()).collect();
+        behind.windows(3).any(|row| {
+            number(row[0]).is_some_and(|count| count > 1)
+                && matches!(row[1], "vehicles" | "cars")
+                && matches!(row[2], "behind" | "back" | "ahead")
+        })
     }
 
     /// "The AV was the lead vehicle stopped at a light", "waited as the first car in line": what it is, and nobody else.
@@ -116,8 +145,9 @@ impl Parser<'_> {
             let hint = relation_behind(all, at);
             let verb = all.get(at + 1).map(|next| &next.chunk);
             self.world.touches = matches!(verb, Some(Chunk::Verb(Sense::Contact, _)));
+            self.world.apart = self.stands_farther(placed.end);
             let actor = self.world.resolve(owner, (placed.first, placed.end), hint);
-            self.world.touches = false;
+            (self.world.touches, self.world.apart) = (false, false);
             let told = owner.compass.is_some()
                 || owner.adjectives.iter().any(|word| matches!(word, Adjective::First | Adjective::Another));
             let actor = if told { actor } else { self.as_a_result(actor, placed.first) };
@@ -232,7 +262,7 @@ impl Parser<'_> {
         let taken = &mut self.frames[frame];
         // Nobody touches itself: "the van made contact with the van that was turning".
         let itself = taken.sense == Sense::Contact && taken.who == Some(actor) && actor != SUBJECT;
-        let actor = if itself { self.world.like(actor).unwrap_or(actor) } else { actor };
+        let actor = if itself { self.world.other_like(actor).unwrap_or(actor) } else { actor };
         taken.object = Some(actor);
         taken.on.clone_from(&mention.piece);
         taken.end = placed.end;

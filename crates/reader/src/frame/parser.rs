@@ -146,7 +146,7 @@ impl Parser<'_> {
             Chunk::Piece(piece) => self.piece(piece, all, at, carry),
             Chunk::Pronoun => self.pronoun(all, at, carry),
             Chunk::Relative => self.relative(all, at, carry),
-            Chunk::Comma => self.comma(self.behind_small_words(all, at), carry),
+            Chunk::Comma => self.comma(placed.first, self.behind_small_words(all, at), carry),
             Chunk::Word => self.word(all, at, carry),
             other => {
                 match other {
@@ -163,7 +163,7 @@ impl Parser<'_> {
                     }
                     Chunk::Side(side) => self.side(*side, carry),
                     Chunk::Lane(lane) => self.lane(*lane, placed, carry),
-                    Chunk::Spot(spot) => self.spot(*spot, carry),
+                    Chunk::Spot(spot) => self.spot(*spot, placed, carry),
                     Chunk::Preposition(word) => preposition(word, carry),
                     // "the corner of Oak Street and Elm Street": no clause begins.
                     Chunk::Joint(Joint::And) if self.names_on_both_sides(all, at) => {}

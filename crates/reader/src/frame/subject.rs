@@ -53,7 +53,8 @@ impl Parser<'_> {
     /// The place that the words of a verb name: "exited its parking stall".
     pub(super) fn spot_in(&self, placed: &Placed) -> Option<Spot> {
         self.tokens[placed.first..placed.end].iter().find_map(|token| match token.text.as_str() {
-            "stall" | "space" | "spot" | "carport" => Some(Spot::Stall),
+            // "left a row of parked cars".
+            "stall" | "stalls" | "space" | "spot" | "carport" | "row" => Some(Spot::Stall),
             "driveway" | "lot" | "garage" | "alley" | "station" => Some(Spot::Driveway),
             "curb" => Some(Spot::Curb),
             _ => None,

@@ -60,6 +60,8 @@ impl Sought<'_> {
         known.kind.is_none_or(|known| same_kind(known, self.kind))
             && (noun.number.is_none() || known.number.is_none() || noun.number == known.number)
             && !contradicts(&known.names, &noun.names)
+            // "A van two cars behind it ran into the sedan right behind it".
+            && !(known.farther && self.hint.is_some())
     }
 }
 
@@ -188,6 +190,10 @@ impl World {
         if noun.article != Article::Indefinite && !bare {
             return None;
         }
+        // "A van two cars behind it" is not whom it met.
+        if self.apart {
+            return Some(Meant::New);
+        }
         let announced = self.latest(|known| {
             known.announced
                 && sought.fits(known)
@@ -294,7 +300,7 @@ impl World {
         let one_of = rider && !noun.several;
         let found = self
             .latest(|known| called(known) && fits(known))
-            .or_else(|| self.latest(|known| known.kind == Some(kind) && as_many(known)))
+            .or_else(|| self.latest(|known| known.kind == Some(kind) && as_many(known) && !known.is_bystander()))
             .or_else(|| self.latest(as_many))
             .or_else(|| self.latest(|known| one_of && known.several && known.kind == Some(kind) && fits(known)));
         if let Some(meant) = self.slip_of_the_pen(sought, found) {
@@ -320,7 +326,16 @@ impl World {
         let plain = kind == Kind::Vehicle && noun.names.is_empty() && noun.adjectives.is_empty();
         let goes_on = self.topic == SUBJECT && self.actors[SUBJECT].last > self.actors[found].last;
         let other_kind = self.actors[found].kind != Some(Kind::Vehicle);
-        Some(Meant::Known(if plain && known && other_kind && goes_on { SUBJECT } else { found }))
+        if !(plain && known && other_kind && goes_on) {
+            return Some(Meant::Known(found));
+        }
+        // "A van passed it and the vehicle behind it": seen from it, and so another one than both.
+        let here = self.actors[found].sentence == Some(self.sentence);
+        Some(match hint {
+            None => Meant::Known(SUBJECT),
+            Some(_) if here => Meant::New,
+            Some(_) => Meant::Known(found),
+        })
     }
 
     /// Whose driver, passenger or rider is meant.

@@ -31,6 +31,8 @@ pub struct Known {
     pub another: bool,
     /// It was brought on as the second.
     pub second: bool,
+    /// Others are told to stand between it and the subject vehicle.
+    pub farther: bool,
     /// It was brought on as another one with a name of the subject vehicle.
     pub namesake: bool,
     /// More than one.
@@ -67,6 +69,11 @@ impl Known {
     /// Whether it does things: it is no thing, as far as is told.
     pub fn acts(&self) -> bool {
         self.kind.is_none_or(acts)
+    }
+
+    /// Whether it was told of for its place alone: "passed it and the vehicle behind it".
+    fn is_bystander(&self) -> bool {
+        self.kind == Some(Kind::Vehicle) && !self.acted && self.mentions == 1 && !self.relations.is_empty()
     }
 
     /// Notes where it is, once.
@@ -107,6 +114,8 @@ pub struct World {
     pub plain: bool,
     /// The noun that is looked up owns the part which touches: "the front of the van made contact".
     pub touches: bool,
+    /// So many others are told to stand between the noun that is looked up and the subject vehicle.
+    pub apart: bool,
     /// Number of the sentence that is read.
     pub sentence: usize,
     /// Who the sentence, or the one before, is about.
@@ -127,6 +136,7 @@ impl World {
             own_driver: false,
             plain: false,
             touches: false,
+            apart: false,
             sentence: 0,
             topic: SUBJECT,
         }
@@ -250,7 +260,8 @@ impl World {
     fn add(&mut self, noun: &Noun) -> Actor {
         let another = noun.adjectives.contains(&Adjective::Another);
         let (several, second, namesake) = (noun.several, noun.second, noun.namesake);
-        self.actors.push(Known { several, another, second, namesake, ..Known::default() });
+        let farther = self.apart;
+        self.actors.push(Known { several, another, second, namesake, farther, ..Known::default() });
         self.actors.len() - 1
     }
 
@@ -282,6 +293,18 @@ impl World {
             .filter(|&other| other != actor && !self.actors[other].announced && !self.actors[other].several)
             .filter(|&other| self.actors[other].kind.is_some_and(|known| same_kind(known, kind)))
             .max_by_key(|&other| self.actors[other].last)
+    }
+
+    /// Somebody else of its kind, where nobody touches itself: also whom only the headline has named so far.
+    pub fn other_like(&mut self, actor: Actor) -> Option<Actor> {
+        let kind = self.actors[actor].kind;
+        let announced = |other: &Actor| self.actors[*other].announced && self.actors[*other].kind == kind;
+        let found =
+            self.like(actor).or_else(|| (1..self.actors.len()).find(|other| *other != actor && announced(other)))?;
+        self.clock += 1;
+        let known = &mut self.actors[found];
+        (known.last, known.sentence, known.acted, known.announced) = (self.clock, Some(self.sentence), true, false);
+        Some(found)
     }
 
     /// Who is called by this name.

@@ -104,6 +104,13 @@ pub fn facts(account: &Account) -> BTreeMap<&'static str, String> {
     let others: Vec<String> = account.others.iter().map(|other| coded(&other.kind.value)).collect();
     let other_places: Vec<String> =
         account.others.iter().filter_map(|other| Some(place(&other.place.as_ref()?.value))).collect();
+    let other_acts: Vec<String> = account
+        .others
+        .iter()
+        .flat_map(|other| &other.acts)
+        .filter(|fact| !fact.after_contact)
+        .map(|fact| coded(&fact.act))
+        .collect();
     let matrix =
         account.matrix.as_ref().map(|fact| format!("{} {}", coded(&fact.value.object), coded(&fact.value.event)));
     let ran = partner.did(Act::RunRed) || partner.did(Act::RunStop);
@@ -133,6 +140,7 @@ pub fn facts(account: &Account) -> BTreeMap<&'static str, String> {
         ("feature", feature.map(|feature| coded(&feature)).unwrap_or_default()),
         ("others", others.join(" ")),
         ("other_places", other_places.join(" ")),
+        ("other_acts", other_acts.join(" ")),
         ("sv_lane", name(&sv.lane)),
         ("sv_heading", name(&sv.heading)),
         ("cp_heading", name(&partner.heading)),

@@ -24,6 +24,7 @@ pub(super) fn lane_words(word: LaneWord) -> &'static str {
         LaneWord::Bus => "the bus lane",
         LaneWord::Shoulder => "the shoulder",
         LaneWord::Curb => "at the kerb",
+        LaneWord::Sidewalk => "the sidewalk",
         LaneWord::Opposing => "the opposite side",
     }
 }
@@ -88,7 +89,7 @@ pub(super) fn lane(
             let heading = network.lane(id).heading(0.0) - own;
             math::wrap_angle(heading).abs() > math::FRAC_PI_2
         }
-        LaneWord::Bike | LaneWord::Bus | LaneWord::Shoulder | LaneWord::Curb => {
+        LaneWord::Bike | LaneWord::Bus | LaneWord::Shoulder | LaneWord::Curb | LaneWord::Sidewalk => {
             return (CheckResult::CannotBeShown, "no such lane is drawn".to_owned());
         }
     };

@@ -250,7 +250,15 @@ impl<'a> Seen<'a> {
 
     /// Whether somebody drives ahead in the ego's lane, and slows before the ego is touched.
     fn slows_ahead(&self, track: &ActorTrack) -> bool {
-        let (ahead_m, left_m) = self.beside(track, self.until);
+        let (mut ahead_m, mut left_m) = self.beside(track, self.until);
+        // Of an ego that goes aside, in the lane in which it came.
+        if self.told.sv_aside().is_some() {
+            let last = self.until.min(track.states.len() - 1);
+            let (first, there) = (&self.ego.states[0], track.states[last].position());
+            let along = Vec2::from_heading(first.heading);
+            ahead_m = along.dot(there - self.ego.states[self.until].position()) - 0.5 * self.ego.length_m;
+            left_m = along.cross(there - first.position());
+        }
         let slowed = (0..self.until).any(|step| Self::mps(track, step) > Self::mps(track, self.until) + SLOWED_MPS);
         (0.0..CROSSING_M).contains(&ahead_m) && left_m.abs() < 0.5 * LANE_M && slowed
     }

@@ -92,7 +92,11 @@ impl<'a> Scene<'a> {
     pub(super) fn lines(&self) -> Vec<f64> {
         let to_m = self.told.sv_aside().map(|aside| aside.to_t_m).filter(|to_m| to_m.abs() >= LANE_M);
         let from_m = self.told.sv_aside().map_or(0.0, |aside| aside.from_t_m);
-        to_m.into_iter().chain([from_m, -LANE_M, LANE_M]).collect()
+        // Beside it only where lanes lead its way.
+        let [_, right_m] = self.ground.lane_edges_m;
+        let left_m = self.ground.opposing_m - 0.5 * LANE_M;
+        let beside = [-LANE_M, LANE_M].into_iter().filter(|t_m| *t_m < right_m && -*t_m < left_m);
+        to_m.into_iter().chain([from_m]).chain(beside).collect()
     }
 
     pub(super) fn beside_m(&self, side: LeftRight, step: usize) -> f64 {

@@ -92,15 +92,18 @@ impl Scene<'_> {
         Some(straight_plan(from, way, (CROSSES_MPS, self.told.contact_s)))
     }
 
-    /// A vehicle that stands across the junction, on the crossing road's lane that the ego comes to first.
+    /// A vehicle that stands across the junction: on the crossing road's lane that the ego comes to first, else where the ego that has come
+    /// into the junction leaves room.
     pub(super) fn blocker(&self, length_m: f64) -> Option<ActorPlan> {
         let (step, _) = self.stops();
-        let [lane_m, _] = CROSSING_LANES_M;
-        let room_m = self.ground.first_m() + lane_m - self.at(step).0 - self.front_m();
-        if !self.ground.junction || room_m < WALKER_GAP_M {
+        let [first_m, _] = CROSSING_LANES_M;
+        let line_m = self.ground.first_m();
+        let lane_m = first_m.max(self.at(step).0 + self.front_m() - line_m + WALKER_GAP_M);
+        let behind_m = 2.0 * corner_m(self.ground.lanes) - WALKER_GAP_M;
+        if !self.ground.junction || lane_m > behind_m {
             return None;
         }
-        let line = self.ground.sv_pose(self.ground.first_m());
+        let line = self.ground.sv_pose(line_m);
         let ahead = Vec2::from_heading(line.heading);
         let at = line.position + ahead * lane_m + ahead.left() * (0.2 * length_m);
         Some(ActorPlan::standing(Place::at(at.x, at.y, line.heading.to_degrees() - 90.0)))

@@ -102,8 +102,7 @@ pub(super) fn has_crossed(party: &Party) -> bool {
 fn is_of_junction(fact: &ActFact) -> bool {
     let Source::Words { text, .. } = &fact.source else { return false };
     let text = text.to_lowercase();
-    ["intersection", "junction"].iter().any(|word| text.contains(word))
-        && !["begin", "began", "begun"].iter().any(|begun| text.starts_with(begun))
+    ["intersection", "junction"].iter().any(|word| text.contains(word)) && !text.starts_with("beginning")
 }
 
 /// Who passes last passes on the side on which the ego is touched: what is told of the other side was said of something else.

@@ -19,6 +19,9 @@ const NAMED_BEFORE: usize = 160;
 /// Who is named no farther behind the words that the ego passed is whom it passed. [byte]
 const PASSES_WITHIN: usize = 12;
 
+/// What blocks a junction is named no more than so many bytes before the words for it: " that was ".
+const BLOCKS_WITHIN: usize = 16;
+
 /// Whether somebody is told to be parked.
 pub(super) fn is_parked(other: &Other) -> bool {
     text(&other.kind.source).contains("parked") || before_contact(other).any(|fact| text(&fact.source).contains("park"))
@@ -204,6 +207,13 @@ impl Story<'_> {
         }
     }
 
+    /// Whether the words right behind somebody say that it blocks the junction: "a van that was blocking the intersection".
+    fn blocks_junction(&self, other: &Other) -> bool {
+        let reason = self.account.sv.reasons.iter().find(|fact| fact.value == StandReason::BlockedJunction);
+        let told = reason.and_then(|fact| span(&fact.source)).zip(span(&other.kind.source));
+        told.is_some_and(|((start, _), (_, end))| (end..end + BLOCKS_WITHIN).contains(&start))
+    }
+
     /// Whether somebody was about to change lanes.
     fn merges_yet(&self, other: &Other) -> bool {
         other.acts.iter().any(|fact| fact.act == Act::LaneChange && fact.begun && !fact.after_contact)
@@ -292,6 +302,9 @@ impl Story<'_> {
         // Crossing traffic that has not cleared the junction.
         let held = other.several && crosses && did(&[Act::Hold]) && told.sv.state == ContactState::Stopped;
         if held && (told.place == PlaceKind::Intersection || told.is_controlled()) && !beside && !queue {
+            return Some(Role::Blocker);
+        }
+        if !other.several && told.sv.state == ContactState::Stopped && self.blocks_junction(other) {
             return Some(Role::Blocker);
         }
         let for_turn =

@@ -64,6 +64,7 @@ pub(crate) const fn strip_of(word: LaneWord) -> Option<StripKind> {
         LaneWord::Bike => Some(StripKind::Bike),
         LaneWord::Shoulder => Some(StripKind::Shoulder),
         LaneWord::Curb => Some(StripKind::Parking),
+        LaneWord::Sidewalk => Some(StripKind::Sidewalk),
         _ => None,
     }
 }

@@ -284,6 +284,14 @@ fn who_still_is_in_the_junction_stands_across_the_egos_way() {
 }
 
 #[test]
+fn one_vehicle_that_is_told_to_block_the_junction_stands_across_it() {
+    let text = "The AV was traveling north on Elm Street and came to a stop for a bus that was blocking the intersection with Oak Street.";
+    let shown = shown_but(text, "blocker", |blocker| moved(&mut blocker.plan, 0.0, 14.0));
+    let (blocker, ego) = (track(&shown, "blocker").states[0], shown.rollout.ego_track().states[before_contact(&shown)]);
+    assert!(degrees_between(blocker.heading, ego.heading) > 80.0 && blocker.x > ego.x, "{blocker:?}");
+}
+
+#[test]
 fn who_leaves_no_room_stands_behind_the_junction() {
     let shown = shown_reason(NO_ROOM, "beyond");
     let (beyond, ego) = (track(&shown, "beyond").states[0], shown.rollout.ego_track().states[before_contact(&shown)]);

@@ -241,7 +241,7 @@ fn lane_place(lane: LaneWord) -> Option<i32> {
         LaneWord::Right => Some(3),
         LaneWord::RightTurn | LaneWord::Bus => Some(4),
         LaneWord::Bike | LaneWord::Curb | LaneWord::Shoulder => Some(5),
-        LaneWord::Opposing => None,
+        LaneWord::Opposing | LaneWord::Sidewalk => None,
     }
 }
 

@@ -2,6 +2,7 @@
 
 use crate::fold::Reading;
 use crate::fold::types::turning;
+use crate::frame::Frame;
 use crate::lexicon::{Relation, Sense};
 use crate::world::{Actor, SUBJECT};
 use recrash_model::account::{Account, Act, Compass, LeftRight, Source};
@@ -126,6 +127,19 @@ pub(super) fn passes_subject(reading: &Reading<'_>, actor: Actor) -> bool {
     reading
         .before(actor)
         .any(|(_, frame)| frame.act() == Some(Act::Pass) && frame.object.is_none_or(|object| object == SUBJECT))
+}
+
+/// "passed it by crossing into and driving in the opposing lane": where it went to pass, and not where it came from.
+pub(super) fn goes_over_to_pass(reading: &Reading<'_>, actor: Actor) -> bool {
+    let opposite = |frame: &Frame| frame.relations.iter().any(|(relation, _)| *relation == Relation::Opposite);
+    let goes_over = |frame: &Frame| matches!(frame.act(), Some(Act::Drift | Act::LaneChange | Act::Enter));
+    let frames = || reading.before(actor).filter(|(_, frame)| frame.happened());
+    let went = |(there, frame): (usize, &Frame)| {
+        let passed = frames().find(|(_, pass)| pass.act() == Some(Act::Pass) && pass.sentence == frame.sentence);
+        passed.is_some_and(|(pass, _)| frames().any(|(over, frame)| (pass..=there).contains(&over) && goes_over(frame)))
+    };
+    let mut told = frames().filter(|(_, frame)| opposite(frame)).peekable();
+    passes_subject(reading, actor) && told.peek().is_some() && told.all(went)
 }
 
 /// The subject vehicle stood behind it, or followed it.

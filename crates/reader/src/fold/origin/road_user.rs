@@ -5,8 +5,8 @@
 
 use super::fallback::{square_front, zone_side};
 use super::places::{
-    after_its_turn, at_curb, climbs, faces_only, in_stall, lead_of_subject, on_side_street, passes_subject,
-    side_of_road, stood_in,
+    after_its_turn, at_curb, climbs, faces_only, goes_over_to_pass, in_stall, lead_of_subject, on_side_street,
+    passes_subject, side_of_road, stood_in,
 };
 use super::{Clues, changed_from, first_relation, lane_side, relation_to};
 use crate::chunk::Spot;
@@ -48,7 +48,7 @@ struct Case<'a> {
 type Told = Option<Fact<Origin>>;
 type Rule = fn(&Case<'_>) -> Told;
 
-const RULES: [Rule; 35] = [
+const RULES: [Rule; 36] = [
     |case| case.thrown_at_the_rear(),
     |case| case.out_of_a_place(),
     |case| case.stood_in_a_stall(),
@@ -74,6 +74,7 @@ const RULES: [Rule; 35] = [
     |case| case.is_ahead(),
     |case| case.front_on_flank_at_a_junction(),
     |case| case.is_on_a_side(),
+    |case| case.passes_over_the_line(),
     |case| case.passes_the_other_way(),
     |case| case.passes(),
     |case| case.by_lanes(),
@@ -249,7 +250,12 @@ impl<'a> Case<'a> {
     }
 
     fn out_of_a_stall(&self, number: usize) -> Origin {
-        let side = self.side_or_touched();
+        // "left a row of parked cars to pass behind it": across its rear, from the side that it touches with.
+        let behind_it = self.passes_behind().and_then(|fact| match fact.value {
+            Origin::Cross { side } => Some(side),
+            _ => None,
+        });
+        let side = behind_it.or(self.side_or_touched());
         let curb = at_curb(self.reading, self.actor);
         if self.did(Act::Reverse) {
             // Parked behind it, and backwards into its rear.
@@ -688,6 +694,11 @@ impl<'a> Case<'a> {
         let group = told(&self.partner.kind).map(|kind| kind.group());
         let walks = matches!(group, Some(KindGroup::OnFoot | KindGroup::Animal));
         if walks { self.across(side) } else { self.beside(side) }
+    }
+
+    fn passes_over_the_line(&self) -> Told {
+        let over = self.turn.is_none() && goes_over_to_pass(self.reading, self.actor);
+        over.then(|| Fact::by_rule(Origin::Behind, "who goes over to pass comes from behind"))
     }
 
     fn passes_the_other_way(&self) -> Told {
