@@ -230,6 +230,20 @@ pub struct Other {
     pub acts: Vec<ActFact>,
     /// It touched the partner, or the partner it, before the contact with the subject vehicle.
     pub touched_partner: bool,
+    /// How, where that is told.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub touch: Option<Fact<EarlierTouch>>,
+}
+
+/// How the partner and another touched before the crash.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub struct EarlierTouch {
+    /// The partner made contact with the other, and not that with it.
+    pub by_partner: bool,
+    /// Where the partner was touched.
+    pub of_partner: Option<ContactZone>,
+    /// Where the other was.
+    pub of_other: Option<ContactZone>,
 }
 
 /// Two facts that cannot both be true.

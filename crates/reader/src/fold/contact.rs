@@ -104,10 +104,9 @@ impl Contacts {
         contacts
     }
 
-    /// Whether somebody touched the partner, or the partner it, before the crash.
-    pub fn touched_partner(&self, story: &Story, actor: Actor) -> bool {
-        self.earlier.iter().any(|&number| {
-            let frame = &story.frames[number];
+    /// Where somebody is told to have touched the partner, or the partner it, before the crash.
+    pub fn with_partner<'a>(&self, story: &'a Story, actor: Actor) -> Option<&'a Frame> {
+        self.earlier.iter().map(|&number| &story.frames[number]).find(|frame| {
             let pair = [frame.who, frame.object];
             pair.contains(&Some(actor)) && pair.contains(&self.partner)
         })

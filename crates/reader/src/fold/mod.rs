@@ -465,7 +465,8 @@ fn others(reading: &Reading<'_>) -> Vec<Other> {
         if !lively || known.mentions == 0 || kind == Kind::Curb {
             continue;
         }
-        let touched_partner = reading.contacts.touched_partner(story, actor);
+        let touch = reading.contacts.with_partner(story, actor);
+        let touched_partner = touch.is_some();
         let again = known.sentence.is_some_and(|last| first < story.sentences[last].first);
         let nobody = nobody::is_nobody(reading, (first, end), &acts, again)
             || acts.is_empty() && nobody::is_named_before(reading, actor, kind)
@@ -482,6 +483,7 @@ fn others(reading: &Reading<'_>) -> Vec<Other> {
             several: known.several,
             acts: acts::stood_alongside(reading, actor, acts),
             touched_partner,
+            touch: touch.and_then(|frame| touched::earlier(reading, frame)),
         });
     }
     all

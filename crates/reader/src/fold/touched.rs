@@ -5,7 +5,7 @@ use crate::chunk::Piece;
 use crate::frame::{Frame, zone_of};
 use crate::lexicon::{Relation, Sense};
 use crate::world::{Actor, SUBJECT};
-use recrash_model::account::{Fact, Kind};
+use recrash_model::account::{EarlierTouch, Fact, Kind};
 use recrash_model::zones::ContactZone;
 
 /// Zones of the contact that is the crash.
@@ -61,6 +61,17 @@ pub(super) fn zones(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<ContactZone
         all.extend(told_besides(reading, actor, first, column.is_empty()));
     }
     all
+}
+
+/// How the partner and another touched before the crash: whose part met which of the other.
+pub(super) fn earlier(reading: &Reading<'_>, frame: &Frame) -> Option<Fact<EarlierTouch>> {
+    let by_partner = frame.who == reading.contacts.partner;
+    let run = |zone: ContactZone| (frame.sense == Sense::RearEnd).then_some(zone);
+    let of_who = frame.with.as_ref().and_then(zone_of).or(run(ContactZone::Front));
+    let of_object = frame.on.as_ref().and_then(zone_of).or(run(ContactZone::Rear));
+    let (of_partner, of_other) = if by_partner { (of_who, of_object) } else { (of_object, of_who) };
+    let told = of_partner.is_some() || of_other.is_some();
+    told.then(|| Fact { value: EarlierTouch { by_partner, of_partner, of_other }, source: reading.of(frame) })
 }
 
 /// Whether it is told that the trailer of somebody touched.

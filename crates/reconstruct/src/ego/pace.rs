@@ -7,6 +7,7 @@ use crate::pace::plain::{
     Pace, SETS_OFF_MPS2, STANDING, STOPPING_MPS2, first_time, pace, start_over, starts_and_slows, when,
 };
 use crate::told::crash::Told;
+use crate::told::doing::Doing;
 use crate::told::phase::Phase;
 use crate::told::side::{Turning, size_of};
 use recrash_model::account::{ContactState, ControlDevice, Manner, Obeyed, Origin};
@@ -48,7 +49,12 @@ pub(crate) fn ego_paces(told: &Told, ground: &Ground, sv_s_m: f64) -> (Option<Le
                 told.choices.stood_s + STOOD_A_LITTLE_S
             }
             false if told.origin == Origin::Ahead => told.choices.stood_s,
-            false if told.stood_before || told.passes_from_behind() || told.comes_up_slowly() => {
+            false
+                if told.stood_before
+                    || told.passes_from_behind()
+                    || told.comes_up_slowly()
+                    || told.stops_behind_and_is_thrown() =>
+            {
                 told.choices.stood_s + STOOD_LONGER_S
             }
             false => told.choices.stood_s,
@@ -110,7 +116,8 @@ fn before_who_backs(told: &Told) -> Option<Pace> {
     if !told.backs_late || !(told.sv.stood_first || told.sv.state == ContactState::SettingOff) {
         return None;
     }
-    let moving_s = 0.5 * told.cp.speed_mps / SETS_OFF_MPS2 + REVERSES_M / told.cp.speed_mps + BACKS_EARLIER_S;
+    let way_m = if told.cp.phases.is_empty() { REVERSES_M } else { SWINGS_LATE_M };
+    let moving_s = 0.5 * told.cp.speed_mps / SETS_OFF_MPS2 + way_m / told.cp.speed_mps + BACKS_EARLIER_S;
     start_over(told.contact_s, speed_mps, speed_mps * (moving_s - 0.5 * speed_mps / SETS_OFF_MPS2))
 }
 
@@ -160,8 +167,9 @@ fn comes_over_line(told: &Told, ground: &Ground, sv_s_m: f64) -> Option<f64> {
 const BEFORE_LINE_M: f64 = 3.0;
 const LEAST_STOOD_S: f64 = 1.2;
 
-/// How far somebody has reversed at the contact. [m]
+/// How far somebody has reversed at the contact; and who came along, and begins to when the ego has set off. [m]
 pub(crate) const REVERSES_M: f64 = 2.5;
+pub(crate) const SWINGS_LATE_M: f64 = 4.5;
 
 /// Who stood before a junction, and is in it at the contact, sets off from its stop line.
 fn from_line(told: &Told, ground: &Ground, sv_s_m: f64) -> Option<Pace> {
@@ -225,6 +233,12 @@ fn slows_in_turn(told: &Told, past_line_m: Option<f64>) -> Option<Pace> {
 }
 
 impl Told {
+    /// Whether the partner is told to have come to a stop behind an ego that stood, and was thrown against it then.
+    fn stops_behind_and_is_thrown(&self) -> bool {
+        let stops = |doing: &Doing| doing.comes_to_stand() && doing.is_behind_other();
+        self.is_thrown() && self.sv.state.stands() && self.cp.acts.iter().any(stops)
+    }
+
     /// Whether the partner is told to have come up slowly behind an ego that stands: that has stood for long.
     fn comes_up_slowly(&self) -> bool {
         let slow = self.cp.manner == Some(Manner::Slow) && self.cp.state == ContactState::Moving;

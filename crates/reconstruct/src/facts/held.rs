@@ -229,7 +229,7 @@ pub(crate) fn facts(told: &Told, scenario: &Scenario, rollout: &Rollout) -> Vec<
     for (kind, side, track) in
         [(CheckKind::SvLane, &told.sv, Some(ego_track)), (CheckKind::CpLane, &told.cp, touch.track)]
     {
-        if let (Some(word), Some(track)) = (side.lane, track) {
+        if let (Some(word), Some(track)) = (side.lane.filter(|_| !side.lane_to_come), track) {
             let counted = told.counted(kind == CheckKind::SvLane);
             let expected = counted.map_or(lane_words(word).to_owned(), Counted::words);
             held(kind, expected, lane((told, word), scenario, [ego_track, track], touch.time_s));

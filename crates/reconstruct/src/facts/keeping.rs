@@ -132,7 +132,9 @@ pub(super) fn weaves(told: &Told, track: &ActorTrack, contact_s: f64) -> usize {
     };
     // Whose rear touches swings it out, or cuts in.
     let rear = told.cp.zones.iter().any(|zone| zone.is_rear());
+    // Who follows the ego through its turn turns with it.
     let swerves = !rear
+        && !told.cp.turns_later
         && !told.cp.stood_first
         && !told.cp.acts.iter().any(Doing::is_swerve)
         && track.states[..=until].windows(2).any(|pair| sideways(pair) > SIDEWAYS_MPS2);

@@ -35,6 +35,9 @@ const ROUND_DEG: f64 = 60.0;
 /// Who goes straight on along a lane, and is not told to have left it, has turned by no more. [deg]
 const KEEPS_DEG: f64 = 16.0;
 
+/// Nor has it swung out by so much on its way, and back. [deg]
+const SWINGS_DEG: f64 = 25.0;
+
 /// One who moves, and what it meets.
 pub(super) struct Way<'a> {
     pub(crate) scenario: &'a Scenario,
@@ -63,6 +66,13 @@ impl Way<'_> {
     fn turned_deg(&self) -> f64 {
         let turned: f64 = self.until().windows(2).map(|pair| math::wrap_angle(pair[1].heading - pair[0].heading)).sum();
         turned.to_degrees()
+    }
+
+    /// How far it had turned at most on its way to the contact, to either side. [deg]
+    fn most_turned_deg(&self) -> f64 {
+        let turns = self.until().windows(2).map(|pair| math::wrap_angle(pair[1].heading - pair[0].heading));
+        let most = |(turned, most): (f64, f64), turn: f64| (turned + turn, most.max((turned + turn).abs()));
+        turns.fold((0.0, 0.0), most).1.to_degrees()
     }
 
     /// How far it is beside the line that it began on, to the left. [m]
@@ -213,11 +223,15 @@ pub(super) fn check(side: &Side, way: &Way<'_>) -> Option<(String, CheckResult, 
         | Movement::NmAlongside
         | Movement::NmInRoadway => {
             let fits = match side.turning {
-                Turning::No => side.turns_later || turned.abs() < if way.keeps_lane { KEEPS_DEG } else { STRAIGHT_DEG },
+                // Who swings out and back has not gone straight on.
+                Turning::No if way.keeps_lane => {
+                    side.turns_later || turned.abs() < KEEPS_DEG && way.most_turned_deg() < SWINGS_DEG
+                }
+                Turning::No => side.turns_later || turned.abs() < STRAIGHT_DEG,
                 Turning::Round => turned.abs() > ROUND_DEG,
                 Turning::Left | Turning::Right => true,
             };
-            (fits, turned_words(turned))
+            (fits, turned_words(turned) + &swung_words(turned, way.most_turned_deg()))
         }
     };
     let least = match (side.turned, side.turns_wide) {
@@ -267,6 +281,10 @@ fn word(side: &Side) -> String {
         _ => "",
     };
     side.movement.map_or(String::new(), |movement| movement.label().to_lowercase() + turn + more)
+}
+
+fn swung_words(turned: f64, most: f64) -> String {
+    if most - turned.abs() > KEEPS_DEG { format!(", {most:.0} on its way") } else { String::new() }
 }
 
 fn turned_words(degrees: f64) -> String {

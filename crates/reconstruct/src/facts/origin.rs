@@ -48,6 +48,8 @@ pub(super) fn origin(told: &Told, ego: &ActorTrack, other: &ActorTrack, time_s: 
     let turned_off = matches!(told.cp.slants, Some(Slant::Stood { .. }));
     let sets_out = backs.filter(|_| told.cp.backs_in || turned_off).unwrap_or(sets_out);
     let beside_m = BESIDE_M + if turned_off { TURNED_OFF_M } else { 0.0 };
+    // Who rolls back in line overlaps the ego when it begins to.
+    let in_line = !told.backs_in_line() || backs.is_none_or(|step| overlaps(ego, other, step));
     let met = &ego.states[((time_s * 10.0) as usize).min(ego.states.len() - 1)];
     let (ego, other) = (&ego.states[sets_out.min(ego.states.len() - 1)], &other.states[sets_out]);
     // Who comes out of a driveway is behind the place where an ego stands then.
@@ -77,7 +79,7 @@ pub(super) fn origin(told: &Told, ego: &ActorTrack, other: &ActorTrack, time_s: 
         }
         Origin::Ahead => {
             let faces = same_way || on_foot && !told.comes_across() || state.stands();
-            ahead > -2.0 && faces && left.abs() < beside_m
+            ahead > -2.0 && faces && left.abs() < beside_m && in_line
         }
         Origin::Opposite => facing.abs() > 120.0 && (!told.comes_over || left > OVER_M),
         Origin::Beside { side } => (facing.abs() < 60.0 || told.comes_across()) && same_way && beside(side),
@@ -98,6 +100,13 @@ pub(super) fn origin(told: &Told, ego: &ActorTrack, other: &ActorTrack, time_s: 
     let aside = if left < 0.0 { "to the right" } else { "to the left" };
     let seen = format!("{:.0} m {along}, {:.0} m {aside}, facing {facing:.0} degrees", ahead.abs(), left.abs());
     (shown, seen)
+}
+
+/// Whether somebody overlaps the ego across its way at a step.
+fn overlaps(ego: &ActorTrack, other: &ActorTrack, step: usize) -> bool {
+    let (own, state) = (&ego.states[step.min(ego.states.len() - 1)], &other.states[step]);
+    let aside_m = Vec2::from_heading(own.heading).cross(state.position() - own.position()).abs();
+    aside_m < 0.5 * (ego.width_m + other.width_m)
 }
 
 /// Who is behind somebody is not abreast of it; and who is in the next lane is no farther aside. [m]
@@ -126,7 +135,7 @@ impl Told {
     /// Whether the partner is told to be behind the ego, and nothing tells that it was in another lane then.
     fn is_in_line_behind(&self) -> bool {
         let straight = !matches!(self.sv.turning, Turning::Left | Turning::Right);
-        let other_lane = self.cp.lane.is_some()
+        let other_lane = self.cp.lane.is_some() && !self.cp.lane_to_come
             || self.leaves_opposite()
             || self.cp.changed_lanes
             || self.cp.movement == Some(Movement::EnteringTraffic);

@@ -108,7 +108,9 @@ fn passes_right(told: &Told) -> bool {
     let goes = matches!(told.cp.movement, Some(Movement::ChangingLanes | Movement::Merging | Movement::Passing));
     let goes = goes && moves && told.cp.aside == Some(LeftRight::Right) && !told.is_at_kerb();
     let by = moves && told.sv.zones.iter().any(touched) || passes || goes;
-    in_lane && matches!(told.origin, Origin::Beside { side: LeftRight::Right })
+    // Who comes across on foot needs no lane there.
+    let drives = !told.comes_across();
+    in_lane && drives && matches!(told.origin, Origin::Beside { side: LeftRight::Right })
         || in_lane && told.origin == Origin::Behind && by
 }
 

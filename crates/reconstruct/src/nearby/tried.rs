@@ -41,6 +41,8 @@ impl<'a> Scene<'a> {
         let (left, right) = (LeftRight::Left, LeftRight::Right);
         let stands = near.does == Does::Stands;
         let untold = near.does == Does::Untold;
+        // Who is told to stand in a lane is at no kerb.
+        let at_kerb = |side| if near.in_lane { Vec::new() } else { self.kerb(side, half_m) };
         let mut list = Vec::new();
         match near.place {
             _ if near.does == Does::TurnsLeft => list.extend(self.turners()),
@@ -75,7 +77,7 @@ impl<'a> Scene<'a> {
                     list.extend(self.beside(side));
                 }
                 list.extend(self.stands_beside(side, half_m));
-                list.extend(self.kerb(side, half_m));
+                list.extend(at_kerb(side));
             }
             Some(Origin::Cross { side }) => list.extend(self.crosses(side, near.does, half_m)),
             _ if near.across => {
@@ -92,11 +94,11 @@ impl<'a> Scene<'a> {
                     list.extend(self.crosses(right, Does::Drives, half_m));
                 }
                 if stands || untold {
-                    list.extend(self.kerb(left, half_m));
-                    list.extend(self.kerb(right, half_m));
+                    list.extend(at_kerb(left));
+                    list.extend(at_kerb(right));
                     list.extend(self.waits_opposite(half_m));
-                    list.extend(self.stands_beside(left, half_m));
-                    list.extend(self.stands_beside(right, half_m));
+                    list.extend(self.stands_somewhere_beside(left, half_m));
+                    list.extend(self.stands_somewhere_beside(right, half_m));
                     list.extend(self.crosses(left, Does::Stands, half_m));
                     list.extend(self.crosses(right, Does::Stands, half_m));
                     list.extend(self.stands_ahead(half_m, 12.0));

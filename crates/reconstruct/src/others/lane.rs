@@ -230,6 +230,7 @@ impl Scene<'_> {
             }
         };
         let pose = self.ground.pose(s_m, t_m);
-        ActorPlan::standing(Place::at(pose.position.x, pose.position.y, pose.heading.to_degrees()))
+        let turned_deg = if extra.opposite { 180.0 } else { 0.0 };
+        ActorPlan::standing(Place::at(pose.position.x, pose.position.y, pose.heading.to_degrees() + turned_deg))
     }
 }

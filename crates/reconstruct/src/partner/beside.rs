@@ -141,7 +141,7 @@ pub(super) fn out_m(told: &Told, staging: &Staging) -> f64 {
     let sine = gear * math::sin(staging.cp_came);
     let lane_edge_m = staging.ground.kerbs_m[usize::from(sine < 0.0)] - 0.5 * strip_m;
     let begins_m = match told.origin {
-        Origin::Stall { .. } => lane_edge_m + half_m,
+        Origin::Stall { .. } | Origin::Cross { .. } => lane_edge_m + half_m,
         _ => lane_edge_m + strip_m + half_m,
     };
     let aside_m = begins_m - position.y * sine.signum();

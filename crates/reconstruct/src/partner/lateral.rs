@@ -20,6 +20,14 @@ use recrash_roads::Course;
 const LEAVES_S: f64 = 2.5;
 const LEAVES_M: (f64, f64) = (12.0, 60.0);
 
+/// Who had come over when the ego braked for it did so on no longer way, and kept its lane for so long before. [m]
+const CAME_OVER_M: f64 = 90.0;
+const KEPT_M: f64 = 5.0;
+
+/// A curve that ends at an angle to its line goes to one side alone where it is no longer than so many times what it goes aside, by that
+/// angle: a cubic does. [1]
+const UNBENT: f64 = 3.0;
+
 /// Who comes over in front of an ego that stops for it began to so long before that slowed. [s]
 const BEGUN_S: f64 = 0.7;
 
@@ -31,7 +39,8 @@ pub(super) fn keeps_lane(told: &Told, staging: &Staging, pace: &Pace, arm_m: f64
             Movement::ChangingLanes | Movement::Merging | Movement::CrossingIntoOpposingLane | Movement::LaneDeparture
         )
     );
-    let leaves = leaves && !told.passes_from_behind()
+    let changed = told.origin == Origin::Behind && told.cp.changed_lanes;
+    let leaves = leaves && !told.passes_from_behind() && !changed
         || told.comes_along_kerb() && staging.ground.stands_m > 0.0 && !told.passes_from_behind()
         || told.strip_y_m(&staging.ground).is_some() && told.cp.turning == Turning::No;
     let over = told.comes_over || told.is_met_on_wrong_side(&staging.ground, staging.cp);
@@ -46,6 +55,16 @@ pub(super) fn keeps_lane(told: &Told, staging: &Staging, pace: &Pace, arm_m: f64
     let ego_brakes_s = || first_time(&ego_paces(told, &staging.ground, staging.sv_s_m).1.acts);
     let over_m = match told.gives_way_to_merge {
         true => since_m.max(usual_m),
+        // It is half over when the ego brakes for it.
+        false if told.slows_for_who_came_over() => {
+            let since_s = 2.0 * (told.contact_s - ego_brakes_s());
+            let driven_m =
+                (pace.driven_m - pace.speed_mps * (told.contact_s - since_s)).max(told.cp.speed_mps * since_s);
+            // On a longer way it would first go to the other side.
+            let turn = math::wrap_angle(cp.heading - staging.cp_came).abs().max(AWAY_RAD);
+            let bends_m = UNBENT * (cp.position.y - line_y_m).abs() / turn;
+            driven_m.min(CAME_OVER_M).min(bends_m).min(pace.driven_m - KEPT_M).max(usual_m)
+        }
         false if told.stops_for_who_comes_over() => {
             (told.cp.speed_mps * (told.contact_s - ego_brakes_s() + BEGUN_S)).clamp(usual_m, LEAVES_M.1)
         }

@@ -1,6 +1,6 @@
 //! How the partner's speed comes to what it is at the contact.
 
-use crate::ego::pace::{AT_LINE_M, REVERSES_M, ego_paces};
+use crate::ego::pace::{AT_LINE_M, REVERSES_M, SWINGS_LATE_M, ego_paces};
 use crate::ground::pieces::corner_m;
 use crate::pace::last::{BACKS_EARLIER_S, BEHIND_M, FOLLOWS_S, last_pace};
 use crate::pace::lead::{self, Lead, MOVES_UP_M};
@@ -9,6 +9,7 @@ use crate::pace::plain::{
 };
 use crate::partner::beside::{self, PULL_OUT_M};
 use crate::told::crash::Told;
+use crate::told::doing::Doing;
 use crate::told::others::Role;
 use crate::told::phase::Phase;
 use crate::told::queue::CREEPS_MPS;
@@ -18,7 +19,7 @@ use crate::told::zones::side_of;
 use crate::touch::lanes;
 use crate::touch::staging::Staging;
 use crate::usual::STOOD_S;
-use recrash_model::account::{ContactState, LeftRight, Origin, Striker};
+use recrash_model::account::{ContactState, LeftRight, Origin, PlaceKind, Striker};
 use recrash_model::math;
 use recrash_model::scenario::Deed;
 use recrash_model::template::Movement;
@@ -35,6 +36,7 @@ pub(super) fn partner_paces(told: &Told, staging: &Staging) -> (Option<Lead>, Pa
     let last = thing_pace(told)
         .or_else(|| beside_from_line(told, staging))
         .or_else(|| cross_from_line(told, staging))
+        .or_else(|| cross_from_stalls(told, staging))
         .or_else(|| beside::from_kerb(told, staging))
         .unwrap_or_else(|| partner_pace(told, staging, (&ego, ego_m, before_s)));
     let stands = cp.state.stands();
@@ -102,6 +104,8 @@ fn partner_pace(told: &Told, staging: &Staging, (ego, ego_m, before_s): (&Pace, 
             let way_m = match told.origin {
                 _ if cp.backs_in => BACKS_IN_M,
                 Origin::Stall { .. } | Origin::Driveway { .. } => beside::out_m(told, staging).max(BACKS_OUT_M),
+                // It has no more time for that.
+                _ if told.backs_late && !cp.phases.is_empty() => SWINGS_LATE_M,
                 _ if swings && !cp.phases.is_empty() => SWINGS_BACK_M.max(LEAST_BACK_M * turn),
                 _ => REVERSES_M.max(LEAST_BACK_M * turn),
             };
@@ -192,6 +196,16 @@ fn cross_from_line(told: &Told, staging: &Staging) -> Option<Pace> {
     let left_m = staging.cp.position.y - ground.centre_y_m();
     let to_line_m = if side == LeftRight::Left { line_m - left_m } else { line_m + left_m };
     start_over(told.contact_s, cp.speed_mps, to_line_m)
+}
+
+/// Who crosses a lot where no road crosses it sets off from among the stalls of its side.
+fn cross_from_stalls(told: &Told, staging: &Staging) -> Option<Pace> {
+    let lot = matches!(told.place, PlaceKind::ParkingLot | PlaceKind::Garage) && !staging.ground.junction;
+    let drives = told.comes_along_lanes() && told.cp.state == ContactState::Moving;
+    // Who is told to pass comes along.
+    let passes = told.cp.acts.iter().any(Doing::is_pass);
+    let crosses = lot && drives && !passes && matches!(told.origin, Origin::Cross { .. });
+    crosses.then(|| start_over(told.contact_s, told.cp.speed_mps, beside::out_m(told, staging))).flatten()
 }
 
 /// How far it is from the stop line of who stood at the junction, across from the ego or on the crossing road, to where it touches in its

@@ -17,6 +17,7 @@ use recrash_model::kinds::PartnerKind;
 use recrash_model::math;
 use recrash_model::scenario::{Act, Actor, ActorPlan, Deed, Leg, Place, Size};
 use recrash_model::vehicle::VehicleSpec;
+use recrash_model::zones::ContactZone;
 use recrash_roads::Course;
 
 /// Who throws the partner at the ego runs into it at this speed over its own, this long before the contact, and this far from where
@@ -51,6 +52,12 @@ const CORNER_RAD: f64 = 0.1;
 const BEHIND_M: f64 = 15.0;
 const STEP_M: f64 = 0.1;
 const LANE_PARTS: [f64; 3] = [1.0, 0.85, 0.7];
+
+/// Whose touched parts are told is looked for there, so much ahead or behind; and from the middle of the lane beside towards the partner, in
+/// so many such parts of a lane. [m, -]
+const NEARBY_M: [f64; 5] = [0.0, -0.5, 0.5, -1.0, 1.0];
+const PART_STEP: f64 = 0.05;
+const MOST_STEPS_ASIDE: u8 = 10;
 
 /// The plan of who runs into the rear of a partner and does not come along behind it: out of the lane beside, where that is told, and else out
 /// of the next driving lane to one that stands beside the lanes. Until where it touches.
@@ -109,12 +116,30 @@ fn flank(told: &Told, ground: &Ground, partner: &OrientedBox, (length_m, width_m
         return None;
     }
     let (s_m, _) = ground.beside(partner.centre);
+    let touches = |pose: &Pose| OrientedBox::new(*pose, length_m, width_m).overlaps(partner);
+    if let Some(ahead_m) = touch_ahead_m(told, (2.0 * partner.half_length, length_m)) {
+        let parts = (0..=MOST_STEPS_ASIDE).map(|step| 1.0 - PART_STEP * f64::from(step));
+        let poses = parts.flat_map(|part| NEARBY_M.map(|by_m| ground.pose(s_m + ahead_m + by_m, part * lane_m)));
+        return poses.into_iter().find(touches);
+    }
     let steps = (BEHIND_M / STEP_M) as usize;
     let poses = LANE_PARTS
         .into_iter()
         .flat_map(|part| (0..steps).map(move |step| ground.pose(s_m - BEHIND_M + STEP_M * step as f64, part * lane_m)));
-    let touches = |pose: &Pose| OrientedBox::new(*pose, length_m, width_m).overlaps(partner);
     poses.into_iter().find(touches)
+}
+
+/// How far ahead of the partner's middle that of the other is, whose flank its front meets, or whose front its flank, or which it rubs along;
+/// nothing where its rear was met, or nobody tells where. Of both the length. [m]
+fn touch_ahead_m(told: &Told, (partner_m, other_m): (f64, f64)) -> Option<f64> {
+    let touch = told.touch.filter(|touch| !touch.of_partner.is_some_and(ContactZone::is_rear))?;
+    let fronts = [touch.of_partner, touch.of_other].map(|zone| zone.is_some_and(ContactZone::is_front));
+    Some(match fronts {
+        [true, _] if touch.by_partner => 0.5 * partner_m,
+        [true, true] => 0.5 * (partner_m - other_m),
+        [_, true] if !touch.by_partner => -0.5 * other_m,
+        _ => 0.0,
+    })
 }
 
 fn at(pose: Pose) -> Place {

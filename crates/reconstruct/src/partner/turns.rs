@@ -156,9 +156,16 @@ pub(super) fn with_its_turn(told: &Told, staging: &Staging, pace: &Pace, arm_m: 
     if !matches!(told.origin, Origin::Behind | Origin::Beside { .. }) || told.sv.turning == Turning::No || reverses {
         return None;
     }
-    // It goes straight on.
-    let goes_on = told.origin == Origin::Behind || told.cp.turning == Turning::No;
-    if goes_on && math::wrap_angle(cp.heading - staging.cp_came).abs() < STRAIGHT_RAD {
+    // It goes straight on: from beside where no turn is told, from behind where it has not turned as the ego does.
+    let as_ego = if told.sv.turning == Turning::Right { -1.0 } else { 1.0 };
+    let turned = math::wrap_angle(cp.heading - staging.cp_came);
+    let goes_on = match told.origin {
+        Origin::Behind => as_ego * turned < STRAIGHT_RAD,
+        // Who is beside one that has turned comes by its way yet.
+        _ if told.sv.turned => told.cp.turning == Turning::No && turned.abs() < STRAIGHT_RAD,
+        _ => told.cp.turning == Turning::No,
+    };
+    if goes_on {
         return None;
     }
     let (met_m, beside_m) = ground.beside(cp.position);

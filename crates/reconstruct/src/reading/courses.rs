@@ -18,6 +18,11 @@ impl Told {
         self.goes_round(sv);
         let drives_on =
             |side: &Side| side.aside.is_some() && matches!(side.movement, Some(Movement::Straight | Movement::Passing));
+        self.cp.changed_lanes |= self.changed_lanes_behind();
+        // Straight ahead of the ego it has stopped before that did, wherever the words tell it.
+        if self.backs_in_line() {
+            self.cp.acts.iter_mut().filter(|doing| doing.comes_to_stand()).for_each(|doing| doing.after_other = None);
+        }
         self.sv.dodges = (drives_on(&self.sv) || self.sv.stopped_aside.is_some()) && self.sv_aside().is_some();
         self.cp.dodges = drives_on(&self.cp) && self.cp_from_left_m().is_some();
         let along = matches!(self.origin, Origin::Ahead | Origin::Behind | Origin::Beside { .. });
@@ -114,6 +119,16 @@ fn lies_before_turn(told: &Told, sv: &Party) -> bool {
 }
 
 impl Told {
+    /// Whether the partner has changed lanes behind the ego, and that slowed or stopped then: it comes straight on since.
+    fn changed_lanes_behind(&self) -> bool {
+        let merges = matches!(self.cp.movement, Some(Movement::ChangingLanes | Movement::Merging));
+        let drives = self.cp.state == ContactState::Moving && !self.cp.stood_first && !self.cp.passes;
+        let last = self.cp.acts.iter().rfind(|doing| doing.goes_aside());
+        let done = last.is_some_and(|doing| doing.act == Act::LaneChange && !doing.begun);
+        let answered = self.sv.acts.iter().any(|doing| doing.answers_done(&self.cp.acts));
+        self.origin == Origin::Behind && merges && drives && done && answered && !self.pushed
+    }
+
     /// Whether the ego came to a stop for a partner beside it that had begun to come over into its lane.
     pub(super) fn stops_for_merge(&self, sv: &Party, partner: &Party) -> bool {
         let step = |party: &Party, of: fn(Act) -> bool| {

@@ -126,6 +126,7 @@ impl Told {
                 || account.others.iter().any(|other| other.touched_partner),
             pusher: others::pusher(account),
             thrower: others::thrower(account),
+            touch: others::touch(account),
             pusher_stands: others::pusher_stands(account),
             pushed_rolling,
             throwers: account.others.iter().filter(|other| other.touched_partner).count().min(1),

@@ -74,7 +74,8 @@ impl Near {
             let place = other.place.as_ref().map(|fact| fact.value);
             let rolls = other.acts.iter().any(|fact| !fact.after_contact && moves(fact.act));
             let does = if rolls { Does::Crosses } else { Does::Stands };
-            return Some(Self { place, across: false, does, also: None, first: First::Untold, number });
+            let (across, in_lane, also, first) = (false, false, None, First::Untold);
+            return Some(Self { place, across, does, in_lane, also, first, number });
         }
         let said = |of: &[&str]| of.iter().any(|word| words.contains(word));
         let place = other.place.as_ref().map(|fact| fact.value).or_else(|| {
@@ -119,9 +120,13 @@ impl Near {
             _ if left && !on_wheels => First::Left,
             _ => First::Untold,
         };
-        Some(Self { place, across, does, also, first, number })
+        let in_lane = before.iter().any(|fact| IN_LANE.iter().any(|words| text(&fact.source).contains(words)));
+        Some(Self { place, across, does, in_lane, also, first, number })
     }
 }
+
+/// Words for one that stands in a lane.
+const IN_LANE: [&str; 6] = ["in-lane", "in lane", "in the lane", "in its lane", "double-parked", "double parked"];
 
 /// Whether an act of somebody who is near may be seen before the contact: that it did not yield is no way of its own.
 fn is_seen(fact: &ActFact) -> bool {

@@ -6,8 +6,9 @@ use crate::told::crash::Told;
 use crate::told::near::Near;
 use crate::told::others::{Extra, GIVEN_WAY, Role, Thrower};
 use crate::told::queue::{leaves_lane, sets_off, waits_ahead};
+use crate::told::zones::side_of;
 use recrash_model::account::{
-    self, Account, Act, ActFact, ContactState, Fact, Kind, KindGroup, Origin, Other, StandReason,
+    self, Account, Act, ActFact, ContactState, Fact, Kind, KindGroup, LeftRight, Origin, Other, StandReason,
 };
 
 /// Things in the way, by their words.
@@ -137,6 +138,7 @@ pub(super) fn wanted(told: &Told, account: &Account) -> Vec<Extra> {
                     behind,
                     between,
                     stays,
+                    opposite: other.place.as_ref().is_some_and(|fact| fact.value == Origin::Opposite),
                     several: other.several,
                     side,
                     ..Extra::of_reason(role)
@@ -211,6 +213,17 @@ fn stays_close(other: &Other) -> bool {
     !crosses && before_contact(other).last().is_some_and(|fact| matches!(fact.act, Act::Hold | Act::Stop))
 }
 
+/// How who touched the partner first did so, where that is told.
+pub(super) fn touch(account: &Account) -> Option<account::EarlierTouch> {
+    account.others.iter().find(|other| other.touched_partner)?.touch.as_ref().map(|fact| fact.value)
+}
+
+/// On which side of the partner it was by where that was touched: along a flank, or at a corner of its front by which it came over.
+fn touched_side(account: &Account) -> Option<Thrower> {
+    let zone = touch(account).filter(|touch| touch.by_partner)?.of_partner.filter(|zone| !zone.is_rear())?;
+    side_of(&[zone]).map(|left| Thrower::Beside(if left > 0.0 { LeftRight::Left } else { LeftRight::Right }))
+}
+
 /// From where who touched the partner first came, where that is told.
 pub(super) fn thrower(account: &Account) -> Option<Thrower> {
     let other = account.others.iter().find(|other| other.touched_partner)?;
@@ -220,6 +233,9 @@ pub(super) fn thrower(account: &Account) -> Option<Thrower> {
         Some(Origin::Cross { side }) => Some(Thrower::Cross(side)),
         Some(Origin::Ahead) => Some(Thrower::Ahead),
         // Who changes to its right comes from the left.
-        _ => other.acts.iter().find(changes)?.side.map(|side| Thrower::Beside(side.other())),
+        _ => match other.acts.iter().find(changes) {
+            Some(change) => change.side.map(|side| Thrower::Beside(side.other())),
+            None => touched_side(account),
+        },
     }
 }

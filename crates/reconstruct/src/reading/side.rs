@@ -88,6 +88,7 @@ pub(super) fn side(party: &Party, kind: Option<Kind>, assumed: &mut Vec<String>,
     let drives = kind.is_none_or(|kind| {
         rides(kind) || !matches!(kind.group(), KindGroup::OnFoot | KindGroup::Animal | KindGroup::Object)
     });
+    let stood_first = stood_first || who == "ego" && state == ContactState::Moving && leaves_space(party);
     let phases = match state_told && state != ContactState::Parked && (drives || who == "ego") {
         true => phases::told(party, state),
         false => Vec::new(),
@@ -154,6 +155,7 @@ pub(super) fn side(party: &Party, kind: Option<Kind>, assumed: &mut Vec<String>,
         came_so: came_mps.is_some(),
         speed_mps: 0.0,
         lane: told(&party.lane),
+        lane_to_come: party.lane.as_ref().is_some_and(|fact| goes_there(&fact.source)),
         control: control(party),
     }
 }
@@ -168,6 +170,17 @@ fn manner(party: &Party) -> Option<Manner> {
     let last =
         since.filter(|fact| fact.manner.is_some() || fact.act == Act::Accelerate).max_by_key(|fact| fact.step)?;
     last.manner
+}
+
+/// Whether the first that is told of somebody is that it came out of a space, or from the kerb: it stood there, and not in a lot that it left.
+fn leaves_space(party: &Party) -> bool {
+    let first = party.acts.iter().filter(|fact| !fact.after_contact).min_by_key(|fact| fact.step);
+    let words = |fact: &ActFact| match &fact.source {
+        Source::Words { text, .. } => text.to_lowercase(),
+        _ => String::new(),
+    };
+    let of_lot = |text: String| ["lot", "garage", "driveway"].iter().any(|word| text.contains(word));
+    first.is_some_and(|fact| fact.act == Act::PullOut && !fact.begun && !of_lot(words(fact)))
 }
 
 /// Whether the first that is told of somebody who is parked is how it came there.
@@ -246,6 +259,12 @@ fn control(party: &Party) -> Option<Control> {
     }
     // What is said last is nearest to the contact.
     party.controls.last().map(|fact| fact.value)
+}
+
+/// Whether words tell that somebody goes to a lane: "to enter the turn lane".
+fn goes_there(source: &Source) -> bool {
+    let goes = |text: &str| ["enter ", "merge ", "move ", "get "].iter().any(|verb| text.starts_with(verb));
+    matches!(source, Source::Words { text, .. } if goes(&text.to_lowercase()))
 }
 
 /// Whether somebody is told to change lanes "into" something that is no lane with a name, to no side: into the lane of whom it touches.

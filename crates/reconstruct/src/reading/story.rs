@@ -180,6 +180,18 @@ impl Story<'_> {
         free && drives && is_straight(told)
     }
 
+    /// Whether words name somebody: of several with that name the first that is told of.
+    fn is_called(&self, other: &Other, words: &str) -> bool {
+        let name = |other: &Other| text(&other.kind.source).split_whitespace().next_back().map(str::to_owned);
+        let Some(called) = name(other).filter(|name| words.split_whitespace().any(|word| word == name)) else {
+            return false;
+        };
+        let partner = self.account.partner.as_ref().and_then(|party| party.kind.as_ref());
+        let of_partner = partner.is_some_and(|kind| text(&kind.source).split_whitespace().next_back() == Some(&called));
+        let first = self.account.others.iter().find(|another| name(another).as_ref() == Some(&called));
+        !of_partner && first.is_some_and(|first| std::ptr::eq(first, other))
+    }
+
     /// The step at which the ego is told to pass somebody.
     fn passes_at(&self, other: &Other) -> Option<u32> {
         let passes = |fact: &&ActFact| fact.act == Act::Pass && !fact.after_contact && !fact.begun;
@@ -189,7 +201,7 @@ impl Story<'_> {
         let of = |fact: &&ActFact| {
             let within =
                 |(start, end): (usize, usize)| named.iter().any(|at| (start..=end + PASSES_WITHIN).contains(at));
-            span(&fact.source).is_some_and(within)
+            span(&fact.source).is_some_and(within) || self.is_called(other, &text(&fact.source))
         };
         self.account.sv.acts.iter().filter(passes).find(of).map(|fact| fact.step)
     }
@@ -266,7 +278,9 @@ impl Story<'_> {
                 (false, false) => (!did(&[Act::Park])).then_some(Role::Kerb),
             };
         }
-        if stands && !other.several && self.is_back(other) && told.sv_aside().is_some() {
+        // Whom it passes on its way out of its line, and whom it has passed and come back behind.
+        let passed = told.sv.state.stands() && self.passes_at(other).is_some() || self.is_back(other);
+        if stands && !other.several && passed && told.sv_aside().is_some() {
             return Some(Role::Obstacle);
         }
         // In the next lane, whether or not the ego slows as it goes by.

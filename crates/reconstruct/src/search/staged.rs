@@ -15,7 +15,7 @@ const AGAIN_RUNS: usize = 100;
 /// What cannot be shown in all its steps is shown in the last of them; and where the partner cannot come out of the middle of its lane, it
 /// comes straight to where it touches. What the two did is brought into the told order where it is not.
 pub(crate) fn staged(told: Told, account: &Account) -> Result<Reconstruction, Untold> {
-    let fewer = told.plainly().into_iter().chain(told.in_fewer_steps());
+    let fewer = told.plainly().into_iter().chain(told.in_fewer_steps()).chain(told.touched_anyhow());
     let others: Vec<Told> = fewer.chain([told.coming_straight()]).collect();
     let made = in_order(told, account, MOST_RUNS);
     let is_true = |made: &Result<Found, Untold>| made.as_ref().is_ok_and(|found| found.made.is_true());

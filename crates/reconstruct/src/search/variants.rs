@@ -24,6 +24,11 @@ impl Told {
         Self { back_straight: true, ..self.clone() }
     }
 
+    /// The same with one who touched the partner first wherever it can, where it is told how.
+    pub(super) fn touched_anyhow(&self) -> Option<Self> {
+        self.touch.is_some().then(|| Self { touch: None, ..self.clone() })
+    }
+
     /// The same without what they did to each other, where that is staged: it is asked for, and said not to be seen.
     pub(super) fn plainly(&self) -> Option<Self> {
         let staged = self.enters() || self.sets_off_first() || self.sv.goes_round || self.does_before();

@@ -11,6 +11,7 @@ use recrash_model::template::Movement;
 /// Who leaves its lane leaves it by so much, who comes from the kerb or goes there by so much, and who changes lanes has done so much
 /// of it at the contact. [m]
 const DEPARTS_M: f64 = 1.6;
+const DEPARTS_A_LITTLE_M: f64 = 0.8;
 const KERB_M: f64 = 2.6;
 const CHANGES_M: f64 = 2.2;
 
@@ -93,8 +94,12 @@ impl Told {
             _ => return None,
         };
         let way_m = match self.cp.movement? {
+            // It has changed lanes, and comes straight on since.
+            Movement::ChangingLanes | Movement::Merging if self.cp.changed_lanes => return None,
             Movement::ChangingLanes | Movement::Merging => CHANGES_M,
             Movement::CrossingIntoOpposingLane => CHANGES_M,
+            // Into the lane of an ego that turns out of that it comes a little.
+            Movement::LaneDeparture if self.goes_straight_beside() => DEPARTS_A_LITTLE_M,
             Movement::LaneDeparture => DEPARTS_M,
             Movement::EnteringTraffic | Movement::ParkingManeuver => PULLS_OUT_M,
             Movement::Straight if self.cp.aside.is_some() => DEPARTS_M,

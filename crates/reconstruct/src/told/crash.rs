@@ -7,7 +7,7 @@ use crate::told::others::{Extra, Thrower};
 use crate::told::rig::Rig;
 use crate::told::side::Side;
 use recrash_model::account::{
-    ContactState, ControlDevice, CrashType, Kind, LeftRight, Origin, PlaceKind, StandReason, Striker,
+    ContactState, ControlDevice, CrashType, EarlierTouch, Kind, LeftRight, Origin, PlaceKind, StandReason, Striker,
 };
 use recrash_model::metrics::CheckKind;
 use recrash_model::narrative::FirstMover;
@@ -60,6 +60,8 @@ pub(crate) struct Told {
     pub(crate) pushed: bool,
     pub(crate) pusher: Option<Kind>,
     pub(crate) thrower: Option<Thrower>,
+    /// How it touched the partner, where told.
+    pub(crate) touch: Option<EarlierTouch>,
     /// Who touched the partner first is told to stand: the partner ran into it.
     pub(crate) pusher_stands: bool,
     /// Who was pushed is told to have come along or slowed, and not to have stood.
@@ -138,8 +140,8 @@ impl Told {
             (CheckKind::Approach, self.origin_told && moves || self.edge.is_some() || self.lies.is_some()),
             (CheckKind::Order, self.order.is_some() && moves),
             (CheckKind::PassedOn, self.pushed),
-            (CheckKind::SvLane, sv.lane.is_some()),
-            (CheckKind::CpLane, cp.lane.is_some() && moves),
+            (CheckKind::SvLane, sv.lane.is_some() && !sv.lane_to_come),
+            (CheckKind::CpLane, cp.lane.is_some() && !cp.lane_to_come && moves),
             (CheckKind::SvControl, sv.control.is_some()),
             (CheckKind::CpControl, cp.control.is_some() && moves),
             (CheckKind::Reason, sv.state.stands() && !self.reasons.is_empty()),
@@ -164,7 +166,13 @@ impl Told {
         let changes =
             matches!(self.cp.movement, Some(Movement::ChangingLanes | Movement::Merging)) && self.cp.stood_first;
         let behind = self.origin == Origin::Behind && self.cp.state != ContactState::Reversing;
-        self.pushed && behind && self.thing.is_none() && !changes
+        self.pushed && behind && self.thing.is_none() && !changes && !self.touched_on_its_way()
+    }
+
+    /// Whether the partner made contact with another, with its front or along a flank.
+    fn touched_on_its_way(&self) -> bool {
+        let touch = self.touch.filter(|_| matches!(self.thrower, Some(Thrower::Beside(_))));
+        touch.is_some_and(|touch| touch.by_partner && touch.of_partner.is_some_and(|zone| !zone.is_rear()))
     }
 
     /// Which lane of its road one of the two is told to be in, counted from a side.

@@ -54,8 +54,19 @@ impl Doing {
     /// Whether it is a stop, or slowing, behind something by which the other one left its line, and that one's way to it.
     pub(super) fn answers(&self, other: &[Doing]) -> bool {
         let slows = matches!(self.act, Act::Stop | Act::Slow);
-        let aside = |doing: &Doing| doing.goes_aside() && self.after_other.is_some_and(|after| doing.step <= after);
+        let aside = |doing: &Doing| doing.goes_aside() && self.is_behind(doing);
         slows && other.iter().any(aside)
+    }
+
+    /// The same, where the other one had left its line by then.
+    pub(crate) fn answers_done(&self, other: &[Doing]) -> bool {
+        let aside = |doing: &Doing| doing.goes_aside() && !doing.begun && self.is_behind(doing);
+        matches!(self.act, Act::Stop | Act::Slow) && other.iter().any(aside)
+    }
+
+    /// Whether the words put it behind what the other one did.
+    fn is_behind(&self, doing: &Doing) -> bool {
+        self.after_other.is_some_and(|after| doing.step <= after)
     }
 
     /// Whether it is that it set off, and the words put that behind the same of the other one.
@@ -78,6 +89,11 @@ impl Doing {
     /// Whether it is a stand.
     pub(super) const fn is_stand(&self) -> bool {
         matches!(self.act, Act::Stop | Act::Hold)
+    }
+
+    /// Whether it is a stop.
+    pub(crate) const fn comes_to_stand(&self) -> bool {
+        matches!(self.act, Act::Stop) && !self.begun
     }
 
     /// Whether it comes into a junction.

@@ -89,6 +89,13 @@ impl Told {
             && !self.sv.turned
     }
 
+    /// Whether the partner is beside an ego that turns, and is not told to turn with it.
+    pub(crate) fn goes_straight_beside(&self) -> bool {
+        let turns = matches!(self.sv.turning, Turning::Left | Turning::Right) && !self.sv.turned;
+        let straight = self.cp.turning == Turning::No && !self.cp.turns_later;
+        turns && straight && matches!(self.origin, Origin::Beside { .. }) && self.comes_along_lanes()
+    }
+
     /// The strip that the partner is told to be in, else the ego.
     fn strip(&self) -> Option<StripKind> {
         [self.cp.lane, self.sv.lane].into_iter().flatten().find_map(strip_of)

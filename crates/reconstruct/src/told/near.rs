@@ -36,6 +36,8 @@ pub(crate) struct Near {
     pub(crate) place: Option<Origin>,
     pub(crate) across: bool,
     pub(crate) does: Does,
+    /// It is told to stand in a lane: at no kerb.
+    pub(crate) in_lane: bool,
     /// Another deed on the same way.
     pub(crate) also: Option<Does>,
     /// How it comes to that.

@@ -118,6 +118,8 @@ pub(crate) struct Extra {
     pub(crate) between: bool,
     /// Who is on foot is told to stay where it is, and not to cross.
     pub(crate) stays: bool,
+    /// It is told on the opposite side, and faces as those do who come from there.
+    pub(crate) opposite: bool,
     /// More than one.
     pub(crate) several: bool,
     /// On which side of the ego it is, or from which it comes, where told.
@@ -141,6 +143,7 @@ impl Extra {
             behind: false,
             between: false,
             stays: false,
+            opposite: false,
             several: false,
             side: None,
             near: None,

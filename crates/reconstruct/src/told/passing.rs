@@ -9,6 +9,7 @@ use crate::told::zones::side_of;
 use crate::usual::LANE_M;
 use recrash_model::account::{ContactState, LaneWord, LeftRight, Origin, PlaceKind};
 use recrash_model::template::Movement;
+use recrash_model::zones::ContactZone;
 
 impl Told {
     /// Whether the partner comes along the ego's lane behind it and passes it.
@@ -16,6 +17,7 @@ impl Told {
         let own_lane = match (self.cp.lane, self.sv.lane) {
             (Some(cp), sv) if strip_of(cp).is_some() => sv != Some(cp),
             (Some(LaneWord::Opposing), _) => false,
+            _ if self.cp.lane_to_come => false,
             (Some(cp), Some(sv)) => cp != sv,
             _ => self.bus_lane().is_some(),
         };
@@ -27,6 +29,14 @@ impl Told {
             && matches!(self.cp.state, ContactState::Moving | ContactState::SettingOff)
             && self.cp.turning == Turning::No
             && !own_lane
+    }
+
+    /// Whether the partner rolls back in line: from straight ahead, its rear against the ego's front.
+    pub(crate) fn backs_in_line(&self) -> bool {
+        let (sv, cp) = (&self.sv, &self.cp);
+        let straight = cp.turning == Turning::No && sv.turning == Turning::No && cp.slants.is_none() && !cp.backs_in;
+        let backs = self.origin == Origin::Ahead && cp.state == ContactState::Reversing;
+        backs && straight && cp.zones.contains(&ContactZone::Rear) && sv.zones.contains(&ContactZone::Front)
     }
 
     /// On which side of the ego the partner passes it in the lane for buses, in which the ego is not.
@@ -76,6 +86,12 @@ impl Told {
         !self.plainly && self.comes_over && self.sv.acts.iter().any(|doing| doing.answers(&self.cp.acts))
     }
 
+    /// Whether the ego slowed or stopped for a partner that had come over, and not only begun to.
+    pub(crate) fn slows_for_who_came_over(&self) -> bool {
+        let straight = self.sv.turning == Turning::No && !self.plainly;
+        straight && self.sv.acts.iter().any(|doing| doing.answers_done(&self.cp.acts))
+    }
+
     /// Whether the partner stood behind the ego, and comes out of its lane to go round it.
     pub(crate) fn comes_out_from_stand(&self) -> bool {
         let stood = self.cp.stood_first || self.cp.state == ContactState::SettingOff;
@@ -84,7 +100,10 @@ impl Told {
 
     /// Whether the partner's way is staged by what it did before.
     pub(crate) fn does_before(&self) -> bool {
-        self.comes_out_from_stand() || self.stops_for_who_comes_over() || self.passes_after_stand()
+        self.comes_out_from_stand()
+            || self.stops_for_who_comes_over()
+            || self.slows_for_who_came_over()
+            || self.passes_after_stand()
     }
 
     /// Whether the partner comes along the lane beside which the ego is parked.

@@ -105,6 +105,8 @@ pub(crate) struct Side {
     /// Speed at the contact that is staged. [m/s]
     pub(crate) speed_mps: f64,
     pub(crate) lane: Option<LaneWord>,
+    /// It is told to go there, and not to come along it.
+    pub(crate) lane_to_come: bool,
     /// The signal or sign in front of it, where told.
     pub(crate) control: Option<Control>,
 }

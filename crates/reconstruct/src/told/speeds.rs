@@ -1,11 +1,13 @@
 //! How fast the two are at the contact: as told, or such that who closes on whom does.
 
 use crate::told::crash::Told;
+use crate::told::doing::Doing;
 use crate::told::side::{Side, Slowed, Turning};
-use crate::usual::{SLIDES_MPS, TURNS_MPS, WALKS_MPS};
+use crate::usual::{SLIDES_MPS, TURNS_MPS, WALKS_MPS, WHEELED_M};
 use recrash_model::account::{ContactState, Manner, Origin, PlaceKind};
 use recrash_model::kinds::PartnerKind;
 use recrash_model::template::Movement;
+use recrash_model::vehicle::VehicleSpec;
 
 /// Speed at which a partner that is thrown at the ego meets it, about. [m/s]
 const THROWN_MPS: f64 = 4.0;
@@ -28,6 +30,9 @@ const NEARED_MPS: f64 = 1.2;
 
 /// Who merges in front of an ego that stops for it does so slowly. [m/s]
 const MERGES_MPS: f64 = 1.5;
+
+/// Who comes up to the other one, or is come up to, beside it or in its lane, is so much faster or slower. [m/s]
+const OTHER_PACE_MPS: f64 = 2.5;
 
 /// Highest speed in a turn of who comes up beside the ego. [m/s]
 const FASTEST_TURN_MPS: f64 = 7.0;
@@ -55,6 +60,18 @@ impl Told {
         // Else it would be ahead of an ego that comes to a stop.
         let comes_after = matches!(self.origin, Origin::Behind | Origin::Beside { .. }) && usual_mps > 6.0;
         if comes_after { speed_mps.max(AFTER_MPS) } else { speed_mps }
+    }
+
+    /// Whether a partner that was ahead in the next lane comes over into the way of an ego that keeps its lane, and nobody tells that it was
+    /// slow, had slowed, or was passed: it came along about as fast.
+    fn comes_over_ahead(&self) -> bool {
+        let cp = &self.cp;
+        let slow =
+            cp.slowed_from.is_some() || cp.stood_first || !cp.phases.is_empty() || cp.manner == Some(Manner::Slow);
+        let passed = self.sv.movement == Some(Movement::Passing) || self.sv.acts.iter().any(Doing::is_pass);
+        let over = cp.dodges || cp.acts.iter().any(Doing::goes_aside);
+        let wheels = VehicleSpec::of(cp.kind).length_m > WHEELED_M;
+        self.ahead == Some(true) && over && wheels && !slow && !passed && self.sv_aside().is_none()
     }
 
     /// Speeds at the contact: as told, or such that who closes on whom does.
@@ -122,8 +139,9 @@ impl Told {
                             || self.ahead == Some(true) && self.cp.turning == Turning::No) =>
                 {
                     // Of an ego that slows, as fast as that is at the end: it came faster.
-                    let slower = if self.sv.slowed_from.is_some() { sv } else { sv - 2.5 };
-                    self.cp.speed_mps = self.cp.speed_mps.min(slower.max(0.4));
+                    let slower = if self.sv.slowed_from.is_some() { sv } else { sv - OTHER_PACE_MPS };
+                    let least = if self.comes_over_ahead() { sv - OTHER_PACE_MPS } else { 0.0 };
+                    self.cp.speed_mps = self.cp.speed_mps.max(least).min(slower.max(0.4));
                 }
                 Origin::Beside { .. } if neared => self.cp.speed_mps = NEARED_MPS,
                 // Who turns beside an ego that turns is hardly faster.
@@ -132,12 +150,12 @@ impl Told {
                 }
                 // Who turns across from beside came up beside it, and slowed for its turn.
                 Origin::Beside { .. } if matches!(self.cp.turning, Turning::Left | Turning::Right) => {
-                    self.cp.speed_mps = self.cp.speed_mps.max((sv + 2.5).min(FASTEST_TURN_MPS));
+                    self.cp.speed_mps = self.cp.speed_mps.max((sv + OTHER_PACE_MPS).min(FASTEST_TURN_MPS));
                 }
                 Origin::Behind | Origin::Beside { .. }
                     if self.sv.state != ContactState::Reversing && !self.cp.stood_first && !self.queues() =>
                 {
-                    self.cp.speed_mps = self.cp.speed_mps.max(sv + 2.5);
+                    self.cp.speed_mps = self.cp.speed_mps.max(sv + OTHER_PACE_MPS);
                 }
                 // Who turns round ahead of it came along as fast as it.
                 Origin::Ahead if sv > 0.5 && self.cp.turning == Turning::Round => {

@@ -53,8 +53,10 @@ pub(super) fn bodies(told: &Told, ground: &Rc<Ground>) -> Vec<Staging> {
                         };
                         let off = zones_off(&told.sv.zones, sv_seen) + zones_off(&told.cp.zones, cp_seen);
                         let face_on = told.scrapes() && is_face_on(told, sv, cp);
-                        let along = told.runs_into_rear() && !is_face_on(told, sv, cp);
-                        let swings = told.goes_straight_behind() && math::wrap_angle(heading - came).abs() > SWINGS_RAD;
+                        let along = (told.runs_into_rear() || told.backs_in_line()) && !is_face_on(told, sv, cp);
+                        let round = math::wrap_angle(heading - came).abs();
+                        let swings = told.goes_straight_behind() && round > SWINGS_RAD
+                            || told.goes_straight_beside() && round > STRAIGHT_RAD;
                         // Who keeps its lane behind an ego that leaves its own does not turn with that.
                         let turned = math::wrap_angle(heading - came).abs() > KEEPS_RAD;
                         let off_m = (cp.position.y - ground.sv_pose(sv_s_m).position.y).abs();
@@ -90,7 +92,8 @@ pub(super) fn bodies(told: &Told, ground: &Rc<Ground>) -> Vec<Staging> {
         }
     }
     let nearest = found.iter().map(|staging| staging.cost.0).min().unwrap_or(u32::MAX);
-    if nearest >= if told.rubs_by() { RUBS_OFF } else { FAR_OFF } {
+    let bends = nearest >= if told.rubs_by() { RUBS_OFF } else { FAR_OFF };
+    if bends && !told.goes_straight_beside() {
         found.extend(sweep::stagings(told, ground, trial, nearest));
     }
     found
@@ -106,6 +109,9 @@ const RUBS_OFF: u32 = 1;
 const FACE_ON: u32 = 2;
 const SWINGS: u32 = 2;
 const SWINGS_RAD: f64 = 0.35;
+
+/// Of who goes straight on beside an ego that turns, that it swings by more than this. [rad]
+const STRAIGHT_RAD: f64 = 0.15;
 
 /// Of an oncoming partner, that the ego, which turns, has not come to its lane.
 const BEFORE_LANE: u32 = 3;

@@ -131,7 +131,7 @@ impl Told {
     /// Whether a partner that is told to stand beside the lanes would stand in one, or askew.
     pub(super) fn is_parked_otherwise(&self, ground: &Ground, cp: Pose) -> bool {
         let askew = math::sin(cp.heading).abs() > ASKEW && !self.diagonal;
-        if self.parks_behind() && ground.is_in_lanes(cp, 0.0, 0.0) {
+        if (self.parks_behind() || self.backs_in_line() && self.is_at_kerb()) && ground.is_in_lanes(cp, 0.0, 0.0) {
             return true;
         }
         self.stands_beside(false) && (askew || ground.is_in_lanes(cp, 0.0, 0.0))

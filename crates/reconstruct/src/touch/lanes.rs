@@ -212,6 +212,7 @@ pub(super) fn bends(told: &Told, (ground, sv): (&Ground, Pose), cp: Pose, came: 
     let turn = math::wrap_angle(cp.heading - came);
     // By its way, where it goes with an ego that turns.
     let with_ego = told.sv.turning != Turning::No && !matches!(told.origin, Origin::Opposite | Origin::Cross { .. });
+    let with_ego = with_ego && !told.goes_straight_beside();
     let elsewhere = !told.comes_along_lanes() || told.drives_elsewhere() || told.comes_along_kerb();
     if elsewhere || with_ego || told.cp.state == ContactState::Reversing {
         return 0;

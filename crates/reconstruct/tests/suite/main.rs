@@ -7,6 +7,7 @@ mod between;
 #[path = "../../../reader/tests/suite/common.rs"]
 #[allow(dead_code, reason = "the reader's own tests use the rest")]
 mod common;
+mod courses;
 mod drives;
 mod in_step;
 mod kerb;
