@@ -264,7 +264,13 @@ def suite(suite: Suite) -> Any:
     last = [case.get("tuned") or case.get("first") for case in cases]
     names = [_case_type(case) for case in cases]
     verdicts = [_suite_verdict(case, each) for case, each in zip(cases, last, strict=True)]
-    words = {"passed": "passed", "failed": "failed", "unmet": "never in the situation", "parked": "nothing to test", "not_run": "not run"}
+    words = {
+        "passed": "passed",
+        "failed": "failed",
+        "unmet": "never in the situation",
+        "parked": "nothing to test",
+        "not_run": "not run",
+    }
     order = [each for each, _ in Counter(names).most_common()][::-1]
     counts = Counter(zip(names, verdicts, strict=True))
     with matplotlib.rc_context(STYLE):
