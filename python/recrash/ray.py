@@ -10,9 +10,9 @@ nothing. Batches come back as Arrow tables and are put down in their order: the 
 machines and whatever becomes of them. ``cluster=False`` does the same work in this process, without Ray.
 
 Egos by name are run by tasks; egos that are Python objects, and MetaDrive, live in actors, one for each processor (or
-``actors=``). A class is made anew for each run; another object is copied to each actor. A scenario in which an ego raises is not run,
-nor is one with which a worker dies again and again: the row's ``error`` names it, and the rest goes on. Ctrl-C cancels what is
-under way. A file is written whole or not at all.
+``actors=``). A class is made anew for each run; another object is copied to each actor. A scenario in which an ego raises is
+not run, nor is one with which a worker dies again and again: the row's ``error`` names it, and the rest goes on. Ctrl-C cancels
+what is under way. A file is written whole or not at all.
 """
 
 from __future__ import annotations
