@@ -10,6 +10,7 @@ use recrash_model::math;
 use recrash_model::metrics::{EgoMetrics, Timed};
 use recrash_model::profile::FailureCriteria;
 use recrash_model::scenario::{Aspect, Device, MapKind};
+use recrash_model::vehicle::TYRE_LIMIT_MPS2;
 use recrash_roads::{RoadId, RoadPart};
 
 /// Weaker braking is no braking: engine drag alone gives 0.36 m/s^2. [m/s^2] (assumed)
@@ -71,6 +72,7 @@ pub fn measure_ego(scene: &Scene<'_>, way: &EgoWay<'_>, along: &[Along], criteri
     let driven_s = time_of(scene.counted().len().saturating_sub(1));
     EgoMetrics {
         max_deceleration: hardest_braking(scene),
+        tyre_limit_mps2: TYRE_LIMIT_MPS2 * way.surface.relative_friction(),
         phantom_braking: hardest_phantom_braking(scene, way, along),
         max_reversals,
         max_reversals_time_s,

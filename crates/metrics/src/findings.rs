@@ -161,6 +161,16 @@ fn odd_behaviour(metrics: &Metrics, criteria: &FailureCriteria) -> Vec<Finding> 
             braking.value, braking.time_s, criteria.hard_braking_mps2
         ),
     );
+    add(
+        FindingKind::BrakingBeyondTyres,
+        braking,
+        ego.tyre_limit_mps2,
+        format!(
+            "The ego braked with {:.1} m/s\u{b2} at {:.1} s; tyres give at most {:.1} m/s\u{b2} on this road, so a real vehicle \
+             would have been faster here.",
+            braking.value, braking.time_s, ego.tyre_limit_mps2
+        ),
+    );
     if let Some(phantom) = ego.phantom_braking {
         add(
             FindingKind::PhantomBraking,

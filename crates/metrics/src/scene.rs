@@ -5,6 +5,7 @@ use recrash_model::geometry::{OrientedBox, Vec2};
 use recrash_model::math;
 use recrash_model::rollout::{ActorState, Rollout, STEP_S};
 use recrash_model::scenario::{Device, MissionStop};
+use recrash_model::surroundings::Surface;
 use recrash_roads::path::SegmentShape;
 use recrash_roads::{LanePath, PathPoint, RoadNetwork, Scenario};
 use std::ops::Range;
@@ -30,6 +31,8 @@ pub struct EgoWay<'a> {
     pub stops: &'a [MissionStop],
     /// When the system under test takes over from the recorded driver; 0 where it drives from the beginning. [s]
     pub handover_s: f64,
+    /// What the road is like.
+    pub surface: Surface,
 }
 
 impl<'a> EgoWay<'a> {
@@ -41,13 +44,14 @@ impl<'a> EgoWay<'a> {
             lines: lines.collect(),
             stops: &draft.ego.stops,
             handover_s: draft.ego.handover_s.unwrap_or(0.0),
+            surface: draft.environment.surface,
             ..Self::plain(scenario.network(), &scenario.ego().path, draft.ego.target_speed_mps)
         }
     }
 
     /// A way without a place to stop, driven by one driver.
     pub fn plain(network: &'a RoadNetwork, path: &'a LanePath, target_speed_mps: f64) -> Self {
-        Self { network, path, target_speed_mps, lines: Vec::new(), stops: &[], handover_s: 0.0 }
+        Self { network, path, target_speed_mps, lines: Vec::new(), stops: &[], handover_s: 0.0, surface: Surface::Dry }
     }
 }
 

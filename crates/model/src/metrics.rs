@@ -6,6 +6,7 @@ use crate::conflict::{FirstMover, Side};
 use crate::rollout::TerminationKind;
 use crate::scenario::Approach;
 use crate::template::Template;
+use crate::vehicle::TYRE_LIMIT_MPS2;
 use crate::zones::ContactZone;
 use serde::{Deserialize, Serialize};
 
@@ -93,6 +94,9 @@ pub struct Contact {
 pub struct EgoMetrics {
     /// Hardest braking. [m/s^2, positive]
     pub max_deceleration: Timed,
+    /// The hardest that tyres let it brake on this road. [m/s^2, positive]
+    #[serde(default = "on_a_dry_road")]
+    pub tyre_limit_mps2: f64,
     /// Hardest braking with nothing in its way. [m/s^2, positive]
     pub phantom_braking: Option<Timed>,
     /// Most changes between braking and accelerating within the profile's window.
@@ -106,6 +110,10 @@ pub struct EgoMetrics {
     pub distance_m: f64,
     /// Mean speed. [m/s]
     pub mean_speed_mps: f64,
+}
+
+fn on_a_dry_road() -> f64 {
+    TYRE_LIMIT_MPS2
 }
 
 /// Time series of one rollout, for plots: one value per recorded step.
@@ -171,6 +179,8 @@ pub enum FindingKind {
     Stuck,
     /// Hard braking.
     HardBraking,
+    /// Braking that tyres do not give: what it came to so is no result of a real vehicle.
+    BrakingBeyondTyres,
     /// Braking with nothing in the way.
     PhantomBraking,
     /// Braking and accelerating in turn.
@@ -199,6 +209,7 @@ impl FindingKind {
             Self::OffRoad => "off road",
             Self::Stuck => "stuck",
             Self::HardBraking => "hard braking",
+            Self::BrakingBeyondTyres => "braking beyond tyres",
             Self::PhantomBraking => "phantom braking",
             Self::Oscillation => "oscillation",
             Self::LaneDeparture => "lane departure",

@@ -146,6 +146,13 @@ impl TestResult {
         self.verdict() == TestVerdict::Passed && self.runs.iter().all(unmet)
     }
 
+    /// Whether it passes, and in some run by braking that tyres do not give.
+    pub fn passes_beyond_tyres(&self) -> bool {
+        let is_beyond = |finding: &Finding| finding.kind == FindingKind::BrakingBeyondTyres;
+        let beyond = |run: &TestRun| run.outcome.as_ref().is_some_and(|outcome| outcome.findings.iter().any(is_beyond));
+        self.verdict() == TestVerdict::Passed && !self.never_met() && self.runs.iter().any(beyond)
+    }
+
     /// How all of its runs came out together: the worst, where not running is worst.
     pub fn verdict(&self) -> TestVerdict {
         self.runs.iter().map(|run| run.verdict).max().unwrap_or(TestVerdict::NotRun)

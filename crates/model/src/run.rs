@@ -134,6 +134,11 @@ impl Judgement {
         self.findings.iter().any(|finding| finding.kind.is_failure())
     }
 
+    /// Whether the ego brakes harder than tyres let a vehicle, anywhere.
+    pub fn brakes_beyond_tyres(&self) -> bool {
+        self.findings.iter().any(|finding| finding.kind == FindingKind::BrakingBeyondTyres)
+    }
+
     /// Whether the rollout is true to its record.
     pub fn faithful(&self) -> Answer {
         self.verdict.faithful()

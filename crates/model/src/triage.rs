@@ -7,7 +7,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// The triages' format tag.
-pub const TRIAGE_FORMAT: &str = "recrash.triage/2";
+pub const TRIAGE_FORMAT: &str = "recrash.triage/3";
 
 /// The ego that stands for a competent and careful driver.
 pub const REFERENCE_EGO: &str = "reference";
@@ -51,7 +51,7 @@ impl FailureClass {
             Self::Quirk => "only the system under test fails; every other ego avoids it",
             Self::BeyondReference => "the ego `reference` fails, one that reacts sooner avoids it",
             Self::Unavoidable => "every ego fails in the same way",
-            Self::Unclear => "no ego gets through, but not all fail in the same way",
+            Self::Unclear => "no ego gets through within what tyres give, but not all fail in the same way",
         }
     }
 }
@@ -62,6 +62,8 @@ impl FailureClass {
 pub enum Fared {
     /// Where the system under test crashes, it does not; else it does not fail at all.
     Avoids,
+    /// The same, but by braking that tyres do not give: whether a vehicle can is not told.
+    BeyondTyres,
     /// It fails in the same way: it crashes with the same one first, or comes as near.
     Alike,
     /// It fails in another way.
@@ -72,9 +74,10 @@ impl Fared {
     /// How the other run of a scenario that the system fails compares with the system's.
     pub fn of(system: &JudgedRun, other: &JudgedRun) -> Self {
         let crash = other.first_crash();
+        let avoids = if other.brakes_beyond_tyres() { Self::BeyondTyres } else { Self::Avoids };
         let is_alike = match system.first_crash() {
-            Some(_) if crash.is_none() => return Self::Avoids,
-            None if !other.failed() => return Self::Avoids,
+            Some(_) if crash.is_none() => return avoids,
+            None if !other.failed() => return avoids,
             Some(first) => crash == Some(first),
             None => {
                 // Who touches somebody came near as well.
@@ -92,6 +95,7 @@ impl Fared {
     pub fn label(self) -> &'static str {
         match self {
             Self::Avoids => "avoids it",
+            Self::BeyondTyres => "avoids it beyond tyres",
             Self::Alike => "does not",
             Self::Otherwise => "fails otherwise",
         }
@@ -156,7 +160,7 @@ impl Triage {
 
 #[cfg(test)]
 mod tests {
-    use super::Fared::{Alike, Avoids, Otherwise};
+    use super::Fared::{Alike, Avoids, BeyondTyres, Otherwise};
     use super::*;
 
     fn class(others: &[(&str, Fared)]) -> FailureClass {
@@ -188,6 +192,13 @@ mod tests {
         assert_eq!(class(&[("idm", Alike), ("reference", Otherwise)]), FailureClass::Unclear);
         assert_eq!(class(&[("idm", Otherwise), ("reference", Otherwise)]), FailureClass::Unclear);
         assert_eq!(class(&[("idm", Avoids), ("reference", Otherwise)]), FailureClass::BeyondReference);
+    }
+
+    #[test]
+    fn who_avoids_it_beyond_tyres_makes_a_failure_neither_avoidable_nor_unavoidable() {
+        assert_eq!(class(&[("idm", BeyondTyres), ("reference", Alike)]), FailureClass::Unclear);
+        assert_eq!(class(&[("idm", BeyondTyres), ("reference", BeyondTyres)]), FailureClass::Unclear);
+        assert_eq!(class(&[("idm", BeyondTyres), ("reference", Avoids)]), FailureClass::Avoidable);
     }
 
     #[test]

@@ -139,6 +139,7 @@ fn tags(case: &CaseRow) -> String {
         ("struck", outcome == Outcome::Struck),
         ("tuning", case.found_by_tuning()),
         ("passed", outcome == Outcome::Passed),
+        ("beyond", outcome == Outcome::Passed && case.last_run().is_some_and(|run| run.brakes_beyond_tyres())),
         ("faithful", case.faithful() == Some(Answer::Yes)),
         ("unfaithful", case.faithful() == Some(Answer::No)),
         ("unchecked", case.faithful() == Some(Answer::Unchecked)),

@@ -59,6 +59,8 @@ pub struct Tested {
     pub met: usize,
     /// Of those, failures.
     pub failures: Failures,
+    /// Of those that came into the situation and did not fail, runs in which the ego brakes harder than tyres let a vehicle.
+    pub beyond_tyres: usize,
 }
 
 impl Tested {
@@ -66,7 +68,13 @@ impl Tested {
         let runs: Vec<&RunRow> = runs.collect();
         let met: Vec<&RunRow> = runs.iter().copied().filter(|run| run.situation_met() == Some(true)).collect();
         let failures = Failures::of(met.iter().filter(|run| run.failed()).map(|run| run.cause));
-        Self { ran: runs.len(), met: met.len(), failures }
+        let beyond_tyres = met.iter().filter(|run| !run.failed() && run.brakes_beyond_tyres()).count();
+        Self { ran: runs.len(), met: met.len(), failures, beyond_tyres }
+    }
+
+    /// Runs that came into the situation and did not fail.
+    pub fn passed(&self) -> usize {
+        self.met - self.failures.total()
     }
 }
 

@@ -206,6 +206,13 @@ fn result(summary: &Summary) {
         also("; ", parked, "parked, nothing to test"),
         also("; ", not_run, "not run"),
     ));
+    if last.beyond_tyres > 0 {
+        sentence(&format!(
+            "  in {} of the {} that it passes it brakes harder than tyres give: whether a vehicle would pass them is not told",
+            last.beyond_tyres,
+            last.met - last.failures.total()
+        ));
+    }
     let edited = count(&|case| !case.edited.is_empty());
     if edited > 0 {
         println!("  {edited} edited by hand, and kept");
@@ -238,7 +245,7 @@ mod tests {
     fn failures_come_before_those_that_struck_a_standing_ego_and_who_was_struck_as_it_slowed_is_counted_apart() {
         assert!(Verdict::Fail < Verdict::Struck && Verdict::Struck < Verdict::Pass && Verdict::Pass < Verdict::Parked);
         let counted = Failures { struck_standing: 12, struck_moving: 9, otherwise: 17 };
-        let told = failures(&TestedRuns { ran: 54, met: 51, failures: counted });
+        let told = failures(&TestedRuns { ran: 54, met: 51, failures: counted, beyond_tyres: 0 });
         let words = "38 of 51: 12 struck while it stood, 9 struck from where it does not look while it moved or had just stopped, 17 otherwise";
         assert_eq!(told, words);
     }

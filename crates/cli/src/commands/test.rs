@@ -249,6 +249,11 @@ fn show_results(results: &TestResults) {
     if results.tests.iter().any(TestResult::never_met) {
         screen::sentence("not met: never in the situation of its record, no failure and no pass");
     }
+    let beyond = results.tests.iter().filter(|test| test.passes_beyond_tyres()).count();
+    if beyond > 0 {
+        let words = "of those passed it brakes harder than tyres give: whether a vehicle would pass them is not told";
+        screen::sentence(&format!("in {beyond} {words}"));
+    }
     show_not_run(results);
     show_causes(results);
     show_failures(results);

@@ -46,6 +46,14 @@ fn every_case_shows_its_own_crash_and_says_whether_the_system_met_it() {
     for words in ["Crash types", "Situation met", "Why the others are not told", "Told facts that are shown"] {
         assert!(page.contains(words), "{words}");
     }
+    // Its braking is that of MetaDrive's vehicles: what it passes so is counted.
+    let passed = cases.iter().filter(|case| case["situation_met"] == true && case["tuned"]["failed"] == false);
+    let label = Value::from("braking beyond tyres");
+    let brakes = |case: &&Value| case["tuned"]["findings"].as_array().unwrap().contains(&label);
+    let (beyond, passed) = (passed.clone().filter(brakes).count(), passed.count());
+    let told = format!("In <b>{beyond} of the {passed}</b> that it passes it brakes harder than tyres give");
+    assert_eq!(page.contains(&told), beyond > 0, "{told}");
+    assert!(page.contains("Passes beyond tyres") && passed > 0, "{beyond} of {passed}");
 }
 
 #[test]

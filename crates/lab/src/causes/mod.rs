@@ -87,6 +87,7 @@ pub fn cause(network: &RoadNetwork, rollout: &Rollout, metrics: &Metrics, findin
         FindingKind::Stuck => Cause::StoppedForGood,
         FindingKind::NearMiss => Cause::PassedTooNear,
         FindingKind::HardBraking
+        | FindingKind::BrakingBeyondTyres
         | FindingKind::PhantomBraking
         | FindingKind::Oscillation
         | FindingKind::LaneDeparture => return None,

@@ -107,6 +107,7 @@ fn told_on(
         min_centre_distance: None,
         ego: EgoMetrics {
             max_deceleration: none,
+            tyre_limit_mps2: recrash_model::vehicle::TYRE_LIMIT_MPS2,
             phantom_braking: phantom,
             max_reversals: 0,
             max_reversals_time_s: 0.0,

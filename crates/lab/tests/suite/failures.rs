@@ -7,7 +7,7 @@ use recrash_lab::robustness::{Robustness, robustness};
 use recrash_lab::{Scoring, run_scenario, run_scenario_in, triage};
 use recrash_model::Seed;
 use recrash_model::geometry::OrientedBox;
-use recrash_model::metrics::FindingKind;
+use recrash_model::metrics::{Finding, FindingKind};
 use recrash_model::profile::SystemProfile;
 use recrash_model::rollout::{ActorState, Substeps};
 use recrash_model::run::JudgedRun;
@@ -228,6 +228,11 @@ fn who_touches_another_fails_otherwise() {
     assert_eq!(Fared::of(&crash, &other), Fared::Otherwise);
     other.judgement.findings.clear();
     assert_eq!(Fared::of(&crash, &other), Fared::Avoids);
+    let sentence = String::new();
+    let braking =
+        Finding { kind: FindingKind::BrakingBeyondTyres, time_s: 1.0, value: 15.0, threshold: 9.81, sentence };
+    other.judgement.findings.push(braking);
+    assert_eq!(Fared::of(&crash, &other), Fared::BeyondTyres);
     // Who came too near to one fails alike where the other ego touches that one, and not where it crashes with anybody.
     let nears = |run: &JudgedRun| run.first_crash().is_none() && run.failures().eq([FindingKind::NearMiss]);
     let near = runs.find(nears).unwrap();

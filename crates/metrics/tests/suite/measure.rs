@@ -9,6 +9,7 @@ use recrash_model::metrics::{CollisionKind, FindingKind, Metrics};
 use recrash_model::rollout::ActorState;
 use recrash_model::rollout::{Event, EventKind, PlacedObstacle, Role, Rollout, TerminationKind};
 use recrash_model::scenario::{Approach, ObstacleKind, Turn};
+use recrash_model::surroundings::Surface;
 use recrash_model::vehicle::VehicleSpec;
 use recrash_model::zones::ContactZone;
 
@@ -143,6 +144,22 @@ fn hard_braking_behind_a_stopped_car_is_hard_but_no_phantom() {
     assert_eq!(metrics.ego.phantom_braking, None);
     close(metrics.min_gap.unwrap().value, 2.5, 1e-9);
     assert_eq!(kinds(&rollout, &metrics), [FindingKind::HardBraking]);
+}
+
+#[test]
+fn braking_harder_than_tyres_give_is_found_and_on_a_wet_road_sooner() {
+    let network = straight();
+    let way = path(&network, Approach::Same, Turn::Straight, 1);
+    for (braking_mps2, surface, beyond) in
+        [(9.7, Surface::Dry, false), (9.9, Surface::Dry, true), (6.8, Surface::Wet, false), (7.0, Surface::Wet, true)]
+    {
+        let ego = drive(&way, 5.0, 60, |time| (15.0 - braking_mps2 * time).max(0.0));
+        let rollout = rollout(ego, vec![drive(&way, 40.0, 60, |_| 0.0)]);
+        let way = EgoWay { surface, ..EgoWay::plain(&network, &way, 15.0) };
+        let metrics = recrash_metrics::measure_on(&way, &rollout, &CRITERIA);
+        let found = kinds(&rollout, &metrics).contains(&FindingKind::BrakingBeyondTyres);
+        assert_eq!(found, beyond, "{braking_mps2} m/s^2, {surface:?}");
+    }
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! One run in numbers.
 
 use recrash_model::cause::Cause;
-use recrash_model::metrics::{Answer, Check};
+use recrash_model::metrics::{Answer, Check, FindingKind};
 use recrash_model::preventability::{Bracket, Preventability};
 use recrash_model::run::JudgedRun;
 use recrash_model::severity::Severity;
@@ -74,6 +74,11 @@ impl RunSummary {
     /// Whether it failed by being struck while it stood, seldom by what it drove.
     pub fn struck_standing(&self) -> bool {
         self.failed && self.cause == Some(Cause::StruckStanding)
+    }
+
+    /// Whether the ego brakes harder than tyres let a vehicle, anywhere.
+    pub fn brakes_beyond_tyres(&self) -> bool {
+        self.findings.iter().any(|label| label == FindingKind::BrakingBeyondTyres.label())
     }
 
     /// What findings are ranked by: the greater change of velocity of the two, of a contact with an obstacle the ego's; 0 without any.

@@ -210,6 +210,8 @@ pub struct TestedRuns {
     pub met: usize,
     /// Of those, failures.
     pub failures: Failures,
+    /// Of those that came into the situation and did not fail, runs in which the ego brakes harder than tyres let a vehicle.
+    pub beyond_tyres: usize,
 }
 
 impl Summary {
@@ -271,6 +273,7 @@ impl Summary {
                 ran: runs.len(),
                 met: met.len(),
                 failures: Failures::of(met.iter().filter(|run| run.failed).map(|run| run.cause)),
+                beyond_tyres: met.iter().filter(|run| !run.failed && run.brakes_beyond_tyres()).count(),
             }
         };
         [of(|case| &case.first), of(|case| &case.tuned)]

@@ -269,6 +269,7 @@ pub fn run(cluster: &Cluster, plan: &Plan, arrival_gap_s: f64, rerun_command: St
         min_centre_distance: Some(centres),
         ego: EgoMetrics {
             max_deceleration: Timed { value: -hardest.value, time_s: hardest.time_s },
+            tyre_limit_mps2: recrash_model::vehicle::TYRE_LIMIT_MPS2,
             phantom_braking: None,
             max_reversals: 1,
             max_reversals_time_s: 4.0,

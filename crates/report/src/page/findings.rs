@@ -6,17 +6,19 @@ use crate::view::RunRow;
 use crate::words::{self, fixed, thousands};
 use maud::{Markup, html};
 use recrash_model::metrics::{Finding, FindingKind};
+use recrash_model::vehicle::TYRE_LIMIT_MPS2;
 
 /// Findings listed; the rest stand with their scenarios. [count]
 const LONGEST_LIST: usize = 200;
 
-const KINDS: [FindingKind; 9] = [
+const KINDS: [FindingKind; 10] = [
     FindingKind::Contact,
     FindingKind::ObstacleContact,
     FindingKind::NearMiss,
     FindingKind::OffRoad,
     FindingKind::Stuck,
     FindingKind::HardBraking,
+    FindingKind::BrakingBeyondTyres,
     FindingKind::PhantomBraking,
     FindingKind::Oscillation,
     FindingKind::LaneDeparture,
@@ -86,6 +88,10 @@ fn meaning(kind: FindingKind, context: &Context) -> String {
         FindingKind::OffRoad => "the ego leaves the road".to_owned(),
         FindingKind::Stuck => "the ego stands still and never arrives".to_owned(),
         FindingKind::HardBraking => format!("braking above {} m/s\u{b2}", number(limits.hard_braking_mps2)),
+        FindingKind::BrakingBeyondTyres => format!(
+            "braking above {} m/s\u{b2} on a dry road, less on others: tyres do not give it, so the run says nothing of a real vehicle",
+            number(TYRE_LIMIT_MPS2)
+        ),
         FindingKind::PhantomBraking => {
             format!("braking above {} m/s\u{b2} with nothing in the way", number(limits.phantom_braking_mps2))
         }

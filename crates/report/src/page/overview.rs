@@ -2,7 +2,7 @@
 
 use super::parts::{self, missing};
 use super::{Context, corpus, icon, types};
-use crate::summary::Result;
+use crate::summary::{Result, Tested};
 use crate::view::{CaseRow, RunRow};
 use crate::words::{self, fixed, thousands};
 use crate::{anchor, search, thumbnail};
@@ -83,8 +83,18 @@ fn account_sentence(context: &Context, accounts: &AccountSet) -> Markup {
         b { (thousands(first.failures.total())) " of those " (thousands(first.met)) } @if first.failures.total() > 0 { ": " (manners(first.failures)) } ". A blow to an ego that stood has seldom to do with what it drove, and one from where it does not look hardly has. "
         @if s.tuned { "After tuning within what the reports leave open it fails " b { (thousands(last.failures.total())) " of " (thousands(last.met)) } @if last.failures.total() > 0 { ": " (manners(last.failures)) } "; " (thousands(s.by_tuning)) " of them after tuning alone" } @else { "Tuning within what the reports leave open kept no other scenario" }
         @if s.parked > 0 { "; in " (thousands(s.parked)) " it was parked, and there is nothing to test" }
+        (beyond_tyres(last))
         ". A failure is a contact, a box gap below " (fixed(suite.profile.failure.min_gap_m, 1).unwrap_or_default())
         "\u{a0}m, leaving the road, or getting stuck."
+    }
+}
+
+/// What its passes are worth where it brakes as no vehicle can.
+fn beyond_tyres(tested: Tested) -> Markup {
+    html! {
+        @if tested.beyond_tyres > 0 {
+            ". In " b { (thousands(tested.beyond_tyres)) " of the " (thousands(tested.passed())) } " that it passes it brakes harder than tyres give: whether a vehicle would pass them is not told"
+        }
     }
 }
 
@@ -238,6 +248,7 @@ fn controls(accounts: bool) -> Markup {
         ("all", "All"),
         ("failed", "Fails"),
         ("passed", "Passes"),
+        ("beyond", "Passes beyond tyres"),
         ("faithful", "Faithful"),
         ("unfaithful", "Not faithful"),
         ("unchecked", "Unchecked"),
@@ -253,6 +264,7 @@ fn controls(accounts: bool) -> Markup {
         ("struck", "Struck while it stood"),
         ("tuning", "Found by tuning"),
         ("passed", "Passes"),
+        ("beyond", "Passes beyond tyres"),
         ("met", "Situation met"),
         ("unmet", "Situation not met"),
         ("human", "Human at the contact"),

@@ -124,6 +124,7 @@ fn avoids(other: &EgoOutcome) -> &'static str {
         // Where the system crashes, who only comes near avoids that.
         Fared::Avoids if other.failed => "the crash, but fails",
         Fared::Avoids => "yes",
+        Fared::BeyondTyres => "beyond tyres alone",
         Fared::Alike => "no",
         Fared::Otherwise => "fails otherwise",
     }

@@ -24,7 +24,7 @@ pub fn all(
     all.add(
         "G1",
         "goal",
-        &format!("What {ego} does in the tests of suite {suite} is known: of {{tests}} it passes {{passed}} ({{passed, not met}} of these never in the situation of the record, which says nothing), fails {{failed}}, and {{not_run}} were not run."),
+        &format!("What {ego} does in the tests of suite {suite} is known: of {{tests}} it passes {{passed}} ({{passed, not met}} of these never in the situation of the record, which says nothing; in {{passed, beyond tyres}} it brakes harder than tyres give, which says nothing of a vehicle), fails {{failed}}, and {{not_run}} were not run."),
         &["S1", "S2", "S3", "S4"],
         &["C1", "C2", "C3", "A1"],
     );
@@ -112,7 +112,7 @@ fn groups(all: &mut Structure, runs: &Runs) {
     }
     let under: Vec<&str> = under.iter().map(String::as_str).collect();
     all.add("S2", "strategy", "Over groups of tests: by crash type, whose crash it is, what led to the failure, and what reference drivers make of it.", &under, &["A2"]);
-    all.add("A2", "assumption", "Cause, preventability and whether the situation of a record was met are told by rules and models (docs/models/causes.md, docs/models/reference-drivers.md, docs/nightly.md); the checker counts them and does not run the models.", &[], &[]);
+    all.add("A2", "assumption", "Cause, preventability and whether the situation of a record was met and the ego braked harder than tyres give are told by rules and models (docs/models/causes.md, docs/models/reference-drivers.md, docs/models/ego-behaviour.md, docs/nightly.md); the checker counts them and does not run the models.", &[], &[]);
     all.add("Sn2", "solution", "runs.json: what is said of each test.", &[], &[]);
 }
 

@@ -93,6 +93,8 @@ struct TestFacts {
     cause: Option<&'static str>,
     preventability: Option<&'static str>,
     met: Option<bool>,
+    /// Whether the ego brakes harder than tyres let a vehicle.
+    beyond_tyres: Option<bool>,
     #[serde(skip)]
     outcome: Option<TestOutcome>,
 }
@@ -227,6 +229,7 @@ fn run(bench: &Bench, files: &mut Files, progress: &dyn Progress) -> Result<Vec<
             cause: None,
             preventability: None,
             met: None,
+            beyond_tyres: None,
             outcome: None,
         };
         match ran {
@@ -245,6 +248,7 @@ fn run(bench: &Bench, files: &mut Files, progress: &dyn Progress) -> Result<Vec<
                 facts.verdict = if run.failed() { TestVerdict::Failed } else { TestVerdict::Passed }.label();
                 facts.rollout = Some(name);
                 facts.met = outcome.met;
+                facts.beyond_tyres = Some(run.brakes_beyond_tyres());
                 facts.cause = outcome.cause.map(|cause| cause.label());
                 facts.preventability = outcome.bracket().map(|bracket| bracket.label());
                 facts.outcome = Some(outcome);

@@ -22,6 +22,7 @@ pub fn all(tests: &[TestFacts], reports: &BTreeMap<&'static str, Value>) -> Vec<
         list.count(id, runs(json!({ "verdict": verdict })));
     }
     list.count("passed, not met", runs(json!({ "verdict": "passed", "met": false })));
+    list.count("passed, beyond tyres", runs(json!({ "verdict": "passed", "beyond_tyres": true })));
     list.share("failed_share", "failed", "tests");
     for (field, of) in [
         ("crash_type", (|test: &TestFacts| Some(test.crash_type)) as fn(&TestFacts) -> Option<&'static str>),
