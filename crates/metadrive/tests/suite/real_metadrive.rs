@@ -164,6 +164,30 @@ fn a_barrier_across_the_lane_is_touched_by_a_blind_ego() {
     assert_eq!(rollout.ego, "open-loop");
 }
 
+/// The same question is asked of the native simulator: `crates/sim/tests/suite/partners.rs`.
+#[test]
+fn a_partner_stops_before_a_cone_and_a_barrier_on_its_line_and_passes_one_beside_it() {
+    let Some(metadrive) = start() else { return };
+    let cases = [("cone", 0.0, true), ("barrier", 0.3, true), ("cone", -1.7, false)];
+    let scenarios = cases.map(|(kind, t_m, _)| {
+        let mut draft = crossing();
+        draft["ego"] = json!({"turn": "straight", "lane": 1, "s_m": 5.0, "speed_mps": 0.0, "target_speed_mps": 1.0});
+        draft["map"]["approach_m"] = json!(200.0);
+        draft["partners"][0]["approach"] = json!("same");
+        draft["partners"][0]["start"] = json!({"delta_s_m": 30.0});
+        draft["obstacles"] = json!([{"kind": kind, "s_m": 120.0, "t_m": t_m}]);
+        checked(&draft)
+    });
+    let runs = metadrive.simulate_all(&scenarios, &Drive::OpenLoop(vec![[0.0, -1.0]; 200]), &|_| {});
+    for ((kind, t_m, stops), run) in cases.into_iter().zip(runs) {
+        let rollout = run.unwrap_or_else(|error| panic!("{error}"));
+        let touched = rollout.events.iter().any(|e| matches!(e.kind, EventKind::ObstacleContact { actor: 1, .. }));
+        let last = rollout.actors[1].states.last().expect("states");
+        assert!(!touched, "{kind} at {t_m}: {:?}", rollout.events);
+        assert_eq!(last.speed() < 0.3 && last.x < 120.0, stops, "{kind} at {t_m}: {last:?}");
+    }
+}
+
 #[test]
 fn background_traffic_starts_where_it_is_placed_and_drives_when_the_ego_comes() {
     let Some(metadrive) = start() else { return };
