@@ -29,9 +29,16 @@ pub struct Tested {
     pub met: bool,
     /// It failed.
     pub failed: bool,
+    /// A signal or a sign stands in the scenario.
+    pub signs: bool,
 }
 
 impl Incident<'_> {
+    /// The same where only a scenario counts in which a signal or a sign stands.
+    fn before_signs(self) -> Self {
+        Self { scenario: self.scenario.filter(|tested| tested.signs), ..self }
+    }
+
     fn counts(&self) -> CoverageCounts {
         let scenario = self.scenario.filter(|_| self.tellable);
         let met = scenario.is_some_and(|tested| tested.met);
@@ -71,6 +78,15 @@ enum Place {
     Outside(&'static str),
 }
 
+/// Whether a cell is of those that stand before a signal or a sign: one that a report tells and no scene draws covers nothing there.
+fn is_of_signs(values: &Values) -> bool {
+    let named = |value: &String| value.rsplit(": ").next().is_some_and(|last| SIGNS.contains(&last));
+    values.iter().any(named)
+}
+
+/// Signals and signs, as values of cells name them.
+const SIGNS: [&str; 5] = ["signal", "stop sign", "yield sign", "signals", "stop and yield signs"];
+
 /// A table before anything is counted.
 struct Plan {
     id: &'static str,
@@ -107,7 +123,8 @@ impl Plan {
             match (self.place)(incident.account) {
                 Place::In(values) => {
                     for value in BTreeSet::from_iter(values) {
-                        cells.entry(value).or_default().add(incident.counts());
+                        let counts = if is_of_signs(&value) { incident.before_signs() } else { *incident }.counts();
+                        cells.entry(value).or_default().add(counts);
                     }
                 }
                 Place::Outside(why) => outside.entry(why).or_default().add(incident.counts()),

@@ -48,7 +48,7 @@ fn cell<'a>(table: &'a CoverageTable, values: &[&str]) -> &'a CoverageCounts {
 fn each_count_is_a_part_of_the_one_before_it() {
     let one = account(&[], |_| {});
     let held = |tellable, scenario| Incident { account: &one, tellable, scenario };
-    let tested = |met, failed| Some(Tested { met, failed });
+    let tested = |met, failed| Some(Tested { met, failed, signs: false });
     let incidents = [
         held(false, None),
         held(true, None),
@@ -67,7 +67,11 @@ fn holes_are_what_is_seen_and_not_told_and_what_nobody_saw() {
     let street = account(&[], |account| account["place"]["kind"] = fact("street"));
     let circle = account(&[], |account| account["place"]["kind"] = fact("circle"));
     let alley = account(&[], |account| account["place"]["kind"] = fact("alley"));
-    let told = |account, met| Incident { account, tellable: true, scenario: Some(Tested { met, failed: false }) };
+    let told = |account, met| Incident {
+        account,
+        tellable: true,
+        scenario: Some(Tested { met, failed: false, signs: false }),
+    };
     let roads = table(&[told(&street, true), untold(&circle), untold(&circle), told(&alley, false)], "road");
     let names = |hole| roads.holes(hole).iter().map(|cell| cell.name()).collect::<Vec<_>>();
     assert_eq!(names(Hole::NotTold), ["circle"]);
@@ -112,6 +116,28 @@ fn what_is_not_told_is_no_cell_of_its_own_and_no_hole() {
 fn a_signal_of_the_place_is_control_though_nobody_is_told_to_stand_before_it() {
     let account = account(&[], |account| account["place"]["features"] = json!([fact("yield_sign"), fact("signal")]));
     assert_eq!(cell(&table(&[untold(&account)], "control"), &["signal"]).incidents, 1);
+}
+
+#[test]
+fn a_signal_that_is_told_and_not_drawn_covers_no_signal() {
+    let account = account(&[], |account| {
+        account["sv"]["controls"] = json!([fact(json!({ "device": "signal", "state": "red", "obeyed": null }))]);
+    });
+    for signs in [true, false] {
+        let scenario = Some(Tested { met: true, failed: false, signs });
+        let all = coverage(&[Incident { account: &account, tellable: true, scenario }]);
+        let told = |id: &str, values: &[&str]| cell(all.table(id).expect("a table of this name"), values).told;
+        assert_eq!(told("control", &["signal"]), usize::from(signs));
+        let pairs = all.tables.iter().filter(|table| table.axes.len() == 2).flat_map(|table| &table.cells);
+        let seen = pairs.filter(|cell| cell.counts.incidents == 1);
+        let with_signal = seen.filter(|cell| cell.values.iter().any(|value| value == "control: signal"));
+        assert_eq!(with_signal.clone().count(), 4);
+        assert!(with_signal.clone().all(|cell| cell.counts.told == usize::from(signs)));
+        assert_eq!(all.all.told, 1);
+        let rules = all.table("rules-of-the-road").expect("rules");
+        let art_5 = rules.cells.iter().find(|cell| cell.values[0] == "art. 5: signals" && cell.counts.incidents == 1);
+        assert_eq!(art_5.expect("a cell").counts.told, usize::from(signs));
+    }
 }
 
 #[test]

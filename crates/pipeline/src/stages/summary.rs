@@ -185,6 +185,9 @@ pub struct CaseSummary {
     /// The recorded driver's run, in a suite that goes by accounts.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub recorded: Option<RunSummary>,
+    /// Whether a signal or a sign stands in the scenario that the recorded driver drives.
+    #[serde(default)]
+    pub signs: bool,
     /// Whether the system under test came into the situation of its record; absent where that was not looked at.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub situation_met: Option<bool>,
@@ -325,6 +328,7 @@ impl CaseSummary {
             edited: case.edited.clone(),
             crash_type: case.account.as_ref().map(|account| account.crash_type),
             recorded: case.recorded.as_ref().map(|ran| RunSummary::new(&ran.run)),
+            signs: case.recorded.as_ref().is_some_and(|ran| !ran.scenario.draft().control.is_empty()),
             situation_met: case.tuned.as_ref().and_then(|tuned| tuned.ran.run.situation_met()),
             first: case.first.as_ref().map(|ran| RunSummary::new(&ran.run)),
             tuned: case.tuned.as_ref().map(|tuned| RunSummary::new(&tuned.ran.run)),
@@ -368,7 +372,7 @@ fn corpus(accounts: &AccountSet, cases: &[CaseSummary]) -> CorpusCoverage {
         .filter(|case| told(case))
         .filter_map(|case| {
             let failed = case.tuned.as_ref().is_some_and(|run| run.failed);
-            Some((case.told.as_ref()?, Tested { met: case.situation_met == Some(true), failed }))
+            Some((case.told.as_ref()?, Tested { met: case.situation_met == Some(true), failed, signs: case.signs }))
         })
         .collect();
     let incident = |account, tellable| Incident { account, tellable, scenario: None };
