@@ -28,7 +28,7 @@ pub fn triage(
             failed: run.failed(),
             fared: Fared::of(failed, &run),
             findings: kinds(&run.findings),
-            min_gap: run.metrics.min_gap,
+            min_gap: run.least_gap(),
             termination: run.metrics.termination,
             state_hash: run.rollout.state_hash.clone(),
         });

@@ -3,7 +3,7 @@
 
 use crate::cause::Cause;
 use crate::hash::Fnv;
-use crate::metrics::{Answer, CheckKind, CheckResult, Finding, FindingKind, Metrics, Verdict};
+use crate::metrics::{Answer, CheckKind, CheckResult, Finding, FindingKind, Metrics, Timed, Verdict};
 use crate::preventability::Preventability;
 use crate::rollout::{EventKind, Rollout};
 use crate::severity::Severity;
@@ -152,9 +152,15 @@ impl Judgement {
         kinds
     }
 
-    /// Least box gap to a scripted partner. [m]
+    /// Least box gap to a scripted partner, or to a thing where nobody else is in the scene. [m]
+    pub fn least_gap(&self) -> Option<Timed> {
+        let things = self.metrics.obstacle_gaps.iter().copied().min_by(|a, b| a.value.total_cmp(&b.value));
+        self.metrics.min_gap.or(things).filter(|gap| gap.value.is_finite())
+    }
+
+    /// The same without its time. [m]
     pub fn min_gap_m(&self) -> Option<f64> {
-        self.metrics.min_gap.map(|gap| gap.value).filter(|gap| gap.is_finite())
+        self.least_gap().map(|gap| gap.value)
     }
 }
 

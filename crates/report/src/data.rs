@@ -240,7 +240,7 @@ fn trace(run: &JudgedRun, series: &Series) -> Value {
         "partner": partner(run, series),
         "gaps": series.partners.iter().map(|p| json!([p.actor, column(p.gap_m.iter().copied(), 1000.0)])).collect::<Vec<_>>(),
         "accelerations": accelerations,
-        "minGap": run.metrics.min_gap.map(|gap| json!([short(gap.value, 3), short(gap.time_s, 3)])),
+        "minGap": run.least_gap().map(|gap| json!([short(gap.value, 3), short(gap.time_s, 3)])),
         "events": events(run),
     })
 }
@@ -271,7 +271,7 @@ fn events(run: &JudgedRun) -> Vec<Value> {
             EventKind::Gone { actor } => (event.time_s, "gone", format!("{} is gone", name(*actor))),
         });
     }
-    if let Some(gap) = run.metrics.min_gap {
+    if let Some(gap) = run.least_gap() {
         let value = words::fixed(gap.value, 2).map_or_else(String::new, |value| format!(" {value} m"));
         events.push((gap.time_s, "gap", format!("least gap{value}")));
     }

@@ -176,7 +176,7 @@ fn measured(case: &CaseRow, run: &RunRow, tells: bool) -> Vec<String> {
         named(run.verdict.unchecked().collect()),
         kinds.join("; "),
         number(run.min_gap_m()),
-        number(m.min_gap.map(|gap| gap.time_s)),
+        number(run.least_gap().map(|gap| gap.time_s)),
         number(m.min_centre_distance.map(|distance| distance.value)),
         least(|partner| partner.min_ttc),
         least(|partner| partner.pet),

@@ -83,6 +83,8 @@ fn the_situation_is_that_of_what_was_hit_in_the_record() {
     let run = |ego: Ego| run_scenario(scenario, &Native::new(ego), &profile(), None).unwrap();
     let mut recorded = run(Ego::Recorded);
     let mut tested = run(Ego::Recorded);
+    // Nobody else is there: the least gap is that to a thing.
+    assert_eq!((recorded.metrics.min_gap, recorded.min_gap_m()), (None, Some(0.0)));
     recorded.judgement.metrics.obstacles_hit = vec![1];
     let met = |tested: &JudgedRun| situation(tested, &recorded).result == CheckResult::Shown;
     assert!(met(&tested));

@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 /// One run in numbers.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RunSummary {
-    /// Least box gap to a scripted partner. [m]
+    /// Least box gap to a scripted partner, or to a thing where nobody else is in the scene. [m]
     pub min_gap_m: Option<f64>,
     /// When. [s]
     pub min_gap_time_s: Option<f64>,
@@ -51,8 +51,8 @@ impl RunSummary {
     pub(crate) fn new(run: &JudgedRun) -> Self {
         let told = |c: &Check| format!("{}: expected {}, observed {}", c.kind.label(), c.expected, c.observed);
         Self {
-            min_gap_m: run.metrics.min_gap.map(|gap| gap.value),
-            min_gap_time_s: run.metrics.min_gap.map(|gap| gap.time_s),
+            min_gap_m: run.min_gap_m(),
+            min_gap_time_s: run.least_gap().map(|gap| gap.time_s),
             min_centre_distance_m: run.metrics.min_centre_distance.map(|d| d.value),
             contact: run.metrics.contact.as_ref().map(|contact| contact.kind.label().to_owned()),
             delta_v_mps: run

@@ -109,7 +109,7 @@ pub fn of_case(case: Case) -> Markup {
             caption.hidden-text { "Every ego on this scenario" }
             thead { tr { th scope="col" { "Ego" } th scope="col" { "Avoids it" } th scope="col" { "Result" } th scope="col" { "Least gap" } th scope="col" { "Ended by" } th scope="col" { "Findings" } } }
             tbody {
-                (row(html! { b { (words::clean(case.context.ego, 60)) } " (under test)" }, "no", Result::of(Some(&last.run.judgement)), last.metrics.min_gap, last.metrics.termination, &kinds))
+                (row(html! { b { (words::clean(case.context.ego, 60)) } " (under test)" }, "no", Result::of(Some(&last.run.judgement)), last.run.least_gap(), last.metrics.termination, &kinds))
                 @for other in &triage.others {
                     (row(html! { (words::clean(&other.ego, 60)) }, avoids(other), if other.failed { Result::Failed } else { Result::Passed }, other.min_gap, other.termination, &other.findings))
                 }

@@ -196,7 +196,7 @@ pub(crate) fn outcome(run: &JudgedRun, test: &FrozenTest, recorded: Option<&Judg
         duration_s: run.metrics.duration_s,
         findings: run.findings.clone(),
         contact: run.metrics.contact.clone(),
-        least_gap: run.metrics.min_gap.filter(|gap| gap.value.is_finite()),
+        least_gap: run.least_gap(),
         severity: run.severity.clone(),
         preventability: preventability(&run.rollout),
         cause: run.cause,
