@@ -330,6 +330,11 @@ impl TerminationKind {
 }
 
 impl Rollout {
+    /// The same with the hash of its states.
+    pub fn named(self) -> Self {
+        Self { state_hash: Self::hash_states(&self.actors), ..self }
+    }
+
     /// The hash of all states, actor by actor: FNV-1a (64 bits) over the little-endian bits of x, y, heading, vx,
     /// vy, steer and throttle, in hexadecimal.
     pub fn hash_states(actors: &[ActorTrack]) -> String {

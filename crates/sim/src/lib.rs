@@ -55,7 +55,12 @@ use recrash_roads::Scenario;
 ///
 /// For many runs keep a [`Runner`]: it reuses its memory.
 pub fn simulate(scenario: &Scenario, ego: Ego) -> Rollout {
+    rehearse(scenario, ego).named()
+}
+
+/// The same for a search, which runs many and keeps one: the rollout has no hash of its states ([`Rollout::named`]).
+pub fn rehearse(scenario: &Scenario, ego: Ego) -> Rollout {
     let mut recorder = RolloutRecorder::new();
     Runner::new().run(scenario, ego, &mut recorder);
-    recorder.finish().unwrap_or_else(|| unreachable!("a run begins and ends"))
+    recorder.unnamed().unwrap_or_else(|| unreachable!("a run begins and ends"))
 }

@@ -115,7 +115,7 @@ fn with_others(told: &Told, staging: &Staging, mut draft: ScenarioDraft) -> Scen
     let known = Some(&staging.ground.network);
     let alone = (!told.extras.is_empty()).then(|| check_on(draft.clone(), known).ok()).flatten();
     if let (Some(alone), Some(recorded)) = (alone, draft.ego.recorded.as_ref()) {
-        let alone = recrash_sim::simulate(&alone.value, recrash_sim::Ego::Recorded);
+        let alone = recrash_sim::rehearse(&alone.value, recrash_sim::Ego::Recorded);
         draft.actors.extend(actors::actors(told, staging, recorded, &alone));
         // Who waits ahead waits for the same light.
         draft.control = signals::devices(told, &staging.ground, recorded, &draft.actors);

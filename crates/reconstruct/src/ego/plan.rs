@@ -46,7 +46,7 @@ pub(crate) fn sv_at_contact(told: &Told, ground: &Ground, sv_s_m: f64) -> Option
         ..ScenarioDraft::default()
     };
     let scenario = check_on(alone, Some(&ground.network)).ok()?.value;
-    let rollout = recrash_sim::simulate(&scenario, recrash_sim::Ego::Recorded);
+    let rollout = recrash_sim::rehearse(&scenario, recrash_sim::Ego::Recorded);
     rollout.ego_track().states.get((told.contact_s / STEP_S).round() as usize).map(ActorState::pose)
 }
 

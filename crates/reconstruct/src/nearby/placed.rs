@@ -58,7 +58,7 @@ impl<'a> Scene<'a> {
             let recorded = with.ego.recorded.clone()?;
             with.control = signals::devices(self.told, self.ground, &recorded, &with.actors);
             let Ok(checked) = check_on(with, Some(&self.ground.network)) else { continue };
-            let driven = recrash_sim::simulate(&checked.value, Ego::Recorded);
+            let driven = recrash_sim::rehearse(&checked.value, Ego::Recorded);
             let seen = Seen::new(self.told, &driven, self.contact_s);
             if !hinders_nobody(&extra.id(), &checked.value, (rollout, &driven)) || !seen.holds(extra) {
                 continue;

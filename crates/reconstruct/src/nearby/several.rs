@@ -42,7 +42,7 @@ impl Scene<'_> {
             let recorded = with.ego.recorded.clone()?;
             with.control = signals::devices(self.told, self.ground, &recorded, &with.actors);
             let scenario = recrash_roads::check(with).ok()?.value;
-            let driven = recrash_sim::simulate(&scenario, Ego::Recorded);
+            let driven = recrash_sim::rehearse(&scenario, Ego::Recorded);
             let seen = Seen::new(self.told, &driven, self.contact_s);
             (hinders_nobody(&second.id, &scenario, (rollout, &driven)) && seen.holds(extra))
                 .then(|| (scenario.draft().clone(), driven))

@@ -97,7 +97,7 @@ impl Search {
         }
         self.runs += 1;
         let scenario = checked.value;
-        let rollout = recrash_sim::simulate(&scenario, Ego::Recorded);
+        let rollout = recrash_sim::rehearse(&scenario, Ego::Recorded);
         let verdict = Verdict { checks: held::facts(told, &scenario, &rollout) };
         let others = strays::others_stray(told, &scenario, &rollout);
         let strays = strays::strays(told, &scenario, &rollout);

@@ -23,7 +23,9 @@ pub(crate) fn staged(told: Told, account: &Account) -> Result<Reconstruction, Un
         true => None,
         false => others.into_iter().map(|told| in_order(told, account, AGAIN_RUNS)).find(is_true),
     };
-    other.unwrap_or(made).map(|found| found.made)
+    // The one that is kept is named by its states.
+    let named = |made: Reconstruction| Reconstruction { rollout: made.rollout.named(), ..made };
+    other.unwrap_or(made).map(|found| named(found.made))
 }
 
 /// The same, of which one is taken at another time that shows more of what the two did, and no less else.
