@@ -172,6 +172,10 @@ pub fn story(text: &str, own: Own<'_>) -> Story {
     hold_by_hand(&mut tokens);
     name_passenger_cars(&mut tokens);
     name_loose_boards(&mut tokens);
+    change_lanes(&mut tokens);
+    name_aliases(&mut tokens);
+    stand_still(&mut tokens);
+    drive_as_company(&mut tokens);
     part_owners(&mut tokens);
     let sentences = crate::token::sentences(&tokens);
     let (mut standing, mut frames, mut world) = best(&tokens, &sentences, own);
@@ -214,6 +218,9 @@ pub fn story(text: &str, own: Own<'_>) -> Story {
             (one.object, other.object) = (other.who, one.who);
         }
     }
+    strikes_both(&mut frames, &mut world, &tokens);
+    stood_itself(&mut frames, &tokens, &sentences);
+    fall_once(&mut frames, &world);
     let about: Vec<(usize, Actor)> = frames
         .iter()
         .filter(|frame| frame.act().is_some() && !frame.aside)
@@ -227,6 +234,62 @@ pub fn story(text: &str, own: Own<'_>) -> Story {
         }
     }
     Story { tokens, sentences, standing, frames, world }
+}
+
+/// "A man threw a bottle at both cars", where one other is known at most: the subject vehicle is one of the two.
+fn strikes_both(frames: &mut [Frame], world: &mut World, tokens: &[Token]) {
+    let vehicle = |known: &crate::world::Known| known.kind.is_some_and(recrash_model::account::Kind::is_vehicle);
+    for frame in frames.iter_mut().filter(|frame| frame.is_contact()) {
+        let (Some(who), Some(pair)) = (frame.who, frame.object.filter(|pair| *pair != SUBJECT)) else { continue };
+        let known = &world.actors[pair];
+        let Some((first, _)) = known.kind_tokens.filter(|_| known.several && vehicle(known) && who != SUBJECT) else {
+            continue;
+        };
+        let both = (first.saturating_sub(1)..=first).any(|at| tokens[at].text == "both");
+        let before = |other: &crate::world::Known| other.kind_tokens.is_some_and(|(at, _)| at < first);
+        let others = world.actors.iter().enumerate().skip(1);
+        let named = others
+            .filter(|(actor, other)| ![who, pair].contains(actor) && vehicle(other) && !other.several && before(other));
+        if both && named.count() <= 1 {
+            frame.object = Some(SUBJECT);
+            world.actors[pair].mentions = 0;
+        }
+    }
+}
+
+/// "A cyclist fell while passing it. ... A cyclist came up from behind, passed it and fell": the first sentence told what came of it.
+fn fall_once(frames: &mut Vec<Frame>, world: &World) {
+    let rides = |actor: Actor| {
+        let kind = world.actors[actor].kind.map(recrash_model::account::Kind::group);
+        matches!(kind, Some(KindGroup::Cyclist | KindGroup::Motorcycle | KindGroup::OnFoot))
+    };
+    let falls = |frame: &&Frame| frame.act() == Some(Act::Fall) && frame.happened();
+    let Some(first) = frames.first().map(|frame| frame.sentence) else { return };
+    let early = frames.iter().filter(falls).find(|frame| frame.sentence == first).and_then(|frame| frame.who);
+    let Some(who) = early.filter(|who| rides(*who)) else { return };
+    if frames.iter().filter(falls).any(|frame| frame.who == Some(who) && frame.sentence > first) {
+        frames.retain(|frame| frame.sentence > first || frame.who != Some(who) || frame.is_contact());
+    }
+}
+
+/// "At the time of the contact, was stopped in traffic", "Was turning left": a sentence without its subject is of the subject vehicle.
+fn stood_itself(frames: &mut [Frame], tokens: &[Token], sentences: &[Sentence]) {
+    let mut begun: Vec<usize> = Vec::new();
+    for frame in frames.iter_mut() {
+        let first = sentences[frame.sentence].first;
+        let from = frame.first - usize::from(frame.first > first && tokens[frame.first].text != "was");
+        let head = from == first || from > first && tokens[from - 1].text == "," && tokens[first].text == "at";
+        if frame.who.is_none()
+            && !frame.passive
+            && frame.act().is_some()
+            && tokens[from].text == "was"
+            && head
+            && !begun.contains(&frame.sentence)
+        {
+            frame.who = Some(SUBJECT);
+        }
+        begun.push(frame.sentence);
+    }
 }
 
 /// "The system issued a brake command", "the ADS braked": the vehicle that it drives.
@@ -279,15 +342,122 @@ fn hold_by_hand(tokens: &mut [Token]) {
     }
 }
 
-/// "An unattended skateboard": nobody stands on it, also where it is named without that word.
+/// "An unattended skateboard", "a skateboard that got away from its rider": nobody stands on it, also where it is named without that word.
 fn name_loose_boards(tokens: &mut [Token]) {
     let alone =
         |word: &str| matches!(word, "unattended" | "riderless" | "unoccupied" | "runaway" | "abandoned" | "loose");
-    if !tokens.windows(2).any(|pair| alone(&pair[0].text) && pair[1].text == "skateboard") {
-        return;
+    let mut loose = tokens.windows(2).any(|pair| alone(&pair[0].text) && pair[1].text == "skateboard");
+    for at in 0..tokens.len().saturating_sub(4) {
+        let word = |ahead: usize| tokens.get(at + ahead).map_or("", |token| token.text.as_str());
+        let had = usize::from(matches!(word(2), "had" | "has" | "suddenly"));
+        let lost = match word(2 + had) {
+            "escaped" => true,
+            "got" | "gotten" | "slipped" | "slid" | "flew" | "shot" => matches!(word(3 + had), "away" | "out" | "from"),
+            "broke" | "came" => matches!(word(3 + had), "free" | "loose"),
+            _ => false,
+        };
+        if word(0) == "skateboard" && matches!(word(1), "that" | "which") && lost {
+            "rolled".clone_into(&mut tokens[at + 2 + had].text);
+            loose = true;
+        }
     }
-    for token in tokens.iter_mut().filter(|token| token.text == "skateboard") {
+    for token in tokens.iter_mut().filter(|token| loose && token.text == "skateboard") {
         "object".clone_into(&mut token.text);
+    }
+}
+
+/// "changed from the right lane to the left one", "transitioned from the next lane": a change of lanes, and what it leaves is told behind it.
+fn change_lanes(tokens: &mut [Token]) {
+    for at in 0..tokens.len().saturating_sub(3) {
+        let changes = match tokens[at].text.as_str() {
+            "changed" | "transitioned" | "switched" | "shifted" => "lanechanged",
+            "changing" | "transitioning" | "switching" | "shifting" => "lanechanging",
+            "changes" | "transitions" | "switches" | "shifts" => "lanechanges",
+            _ => continue,
+        };
+        let lane = |token: &Token| matches!(token.text.as_str(), "lane" | "lanes");
+        let named = tokens[at + 2..].iter().take(LANE_WORDS).take_while(|token| token.text != ".").any(lane);
+        if tokens[at + 1].text == "from" && named {
+            changes.clone_into(&mut tokens[at].text);
+        }
+    }
+}
+
+/// "A semi-trailer truck (the Actor) came. ... The Actor turned": a name of its own, which the story goes on with.
+fn name_aliases(tokens: &mut [Token]) {
+    let lexicon = Lexicon::get();
+    for at in 1..tokens.len().saturating_sub(2) {
+        if tokens[at].text != "(" {
+            continue;
+        }
+        let alias = at + 1 + usize::from(tokens[at + 1].text == "the");
+        let closed = tokens.get(alias + 1).is_some_and(|next| next.text == ")");
+        let named = closed && tokens[alias].capital && lexicon.longest(tokens, alias, |_| true).is_none();
+        let known = lexicon.longest(tokens, at - 1, |meaning| matches!(meaning, Meaning::Kind(_))).is_some();
+        if !(named && known) {
+            continue;
+        }
+        let (alias, head) = (tokens[alias].text.clone(), tokens[at - 1].text.clone());
+        for again in at + 4..tokens.len() {
+            if tokens[again].text == alias && tokens[again - 1].text == "the" {
+                head.clone_into(&mut tokens[again].text);
+            }
+        }
+    }
+}
+
+/// So many words a lane that is left may have: "the lane immediately to the left". [tokens]
+const LANE_WORDS: usize = 6;
+
+/// "while at a complete stop at a light", "while at a standstill": told without a verb, it stood.
+fn stand_still(tokens: &mut [Token]) {
+    for at in 1..tokens.len().saturating_sub(3) {
+        let begins = matches!(tokens[at - 1].text.as_str(), "while" | "when") && tokens[at].text == "at";
+        let word = |ahead: usize| tokens.get(at + ahead).map_or("", |token| token.text.as_str());
+        let words = match (word(1), word(2), word(3)) {
+            ("a", "complete" | "full" | "dead", "stop" | "standstill") => 4,
+            ("a", "stop" | "standstill", _) if word(3) != "sign" && word(3) != "light" => 3,
+            _ => 0,
+        };
+        if begins && words > 0 {
+            "stopped".clone_into(&mut tokens[at].text);
+            for token in &mut tokens[at + 1..at + words] {
+                "completely".clone_into(&mut token.text);
+            }
+        }
+    }
+}
+
+/// "Acme was proceeding straight", in a report of that company: its vehicle was.
+fn drive_as_company(tokens: &mut [Token]) {
+    let drives = |word: &str| {
+        matches!(
+            word,
+            "proceeding"
+                | "traveling"
+                | "travelling"
+                | "driving"
+                | "stopped"
+                | "turning"
+                | "merging"
+                | "yielding"
+                | "slowing"
+                | "heading"
+                | "moving"
+                | "waiting"
+        )
+    };
+    for at in 0..tokens.len().saturating_sub(2) {
+        let company = Lexicon::get().longest(tokens, at, |meaning| matches!(meaning, Meaning::Company));
+        if company.is_some_and(|found| found.length == 1)
+            && tokens[at + 1].text == "was"
+            && drives(&tokens[at + 2].text)
+            && at
+                .checked_sub(1)
+                .is_none_or(|before| matches!(tokens[before].text.as_str(), "." | "," | "when" | "while" | "as"))
+        {
+            "av".clone_into(&mut tokens[at].text);
+        }
     }
 }
 
