@@ -40,6 +40,15 @@ impl Parser<'_> {
             {
                 return self.note(last.actor, relation);
             }
+            // "was waiting to pass a van in front", "went around one directly ahead of it": whom it was to pass.
+            let taken = &self.frames[frame];
+            let wished = taken.act() == Some(Act::Pass) && relation == Relation::Ahead && taken.who == Some(SUBJECT);
+            if let (true, Some(object)) = (wished && !taken.described, taken.object.filter(|object| *object != SUBJECT))
+                && to.is_none_or(|to| to == SUBJECT || to == object)
+                && carry.last.as_ref().is_some_and(|last| last.actor == object)
+            {
+                return self.note(object, relation);
+            }
             // "stopped behind a van": who stopped. "yield to a car ahead of the van": the car.
             let governed = || carry.governed_object(&self.frames[frame]) && !self.comes_over(frame, relation, carry);
             let of_object = carry.last.is_some() && (fell_off || governed());
