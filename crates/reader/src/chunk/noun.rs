@@ -425,6 +425,18 @@ impl Chunker<'_> {
         {
             return None;
         }
+        // "the tram line", "train tracks", "a bus stop": places.
+        let served = matches!(
+            self.text(at + found.length - 1),
+            "tram" | "train" | "bus" | "rail" | "streetcar" | "trolley" | "railroad" | "railway"
+        );
+        let place = matches!(
+            self.text(at + found.length),
+            "line" | "lines" | "track" | "tracks" | "stop" | "island" | "platform" | "station" | "shelter" | "depot"
+        );
+        if served && place && !matches!(found.meaning, Meaning::Subject) {
+            return None;
+        }
         // "the bus only lane", "its vehicle speed".
         let behind = |ahead: usize| self.text(at + found.length + ahead);
         let only = behind(0) == "only" && matches!(behind(1), "lane" | "lanes");

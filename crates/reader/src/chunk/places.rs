@@ -9,17 +9,18 @@ const LONGEST_LANE_NAME: usize = 7;
 
 const LEFT: &[&str] = &["left", "leftmost", "inside", "fast"];
 const RIGHT: &[&str] = &["right", "rightmost", "outside", "slow"];
+const BUS: &[&str] = &["bus", "transit"];
 const TURN: &[&str] = &["turn", "turning"];
 
 /// What the words before "lane" make of it: the first whose words are all there.
 const LANES: [(&[&[&str]], LaneWord); 16] = [
     (&[&["bike", "bicycle"]], LaneWord::Bike),
     // "the rightmost bus and turn lane": who else may use it says where it is.
-    (&[&["bus"], TURN, LEFT], LaneWord::LeftTurn),
-    (&[&["bus"], TURN, RIGHT], LaneWord::RightTurn),
-    (&[&["bus"], &["leftmost"]], LaneWord::Left),
-    (&[&["bus"], &["rightmost"]], LaneWord::Right),
-    (&[&["bus"]], LaneWord::Bus),
+    (&[BUS, TURN, LEFT], LaneWord::LeftTurn),
+    (&[BUS, TURN, RIGHT], LaneWord::RightTurn),
+    (&[BUS, &["leftmost"]], LaneWord::Left),
+    (&[BUS, &["rightmost"]], LaneWord::Right),
+    (&[BUS], LaneWord::Bus),
     (&[&["opposing", "opposite", "oncoming"]], LaneWord::Opposing),
     (&[&["parking", "curb"]], LaneWord::Curb),
     (&[&["emergency"]], LaneWord::Shoulder),
@@ -42,7 +43,7 @@ fn in_lane_names(word: &str) -> bool {
         || matches!(word, "adjacent" | "next" | "neighboring" | "same" | "inside" | "outside" | "curb" | "parking")
         || matches!(word, "opposing" | "opposite" | "oncoming" | "designated" | "emergency" | "slow" | "fast")
         || matches!(word, "passing" | "number" | "second" | "of" | "and" | "two" | "three" | "four")
-        || matches!(word, "shared" | "way" | "vehicle")
+        || matches!(word, "shared" | "way" | "vehicle" | "transit" | "expanded" | "additional" | "new")
 }
 
 /// So many lanes.

@@ -19,6 +19,8 @@ pub(crate) struct Contacts {
     pub earlier: Vec<usize>,
     /// The subject vehicle was not touched.
     pub others_only: bool,
+    /// The columns tell of a second contact, with somebody of another sort.
+    pub of_second: bool,
     /// Who the headline says it was: the story calls the partner otherwise.
     pub retold: Option<Actor>,
 }
@@ -61,6 +63,11 @@ impl Contacts {
             let (first, partner) = as_column(story, record, &touching, first, partner);
             contacts.first = Some(first);
             contacts.partner = Some(partner);
+            let sort_of = |actor: Actor| story.world.actors[actor].kind.and_then(sort);
+            let column = record.partner.known().and_then(column_sort);
+            let as_told = sort_of(partner).is_none() || column.is_none() || sort_of(partner) == column;
+            contacts.of_second =
+                !as_told && touching.iter().any(|(number, actor)| *number > first && sort_of(*actor) == column);
             contacts.earlier = (0..frames.len())
                 .filter(|&number| between_others(&frames[number]) && comes_first(story, number, first, &touching))
                 .collect();
@@ -158,6 +165,11 @@ fn as_column(
     }
     if let Some(&touch) = touching.iter().find(|(_, actor)| is(*actor)) {
         return touch;
+    }
+    // "An electric scooter struck it", by the words: no car that was only there.
+    let light = matches!(said, Some(KindGroup::OnFoot | KindGroup::Cyclist | KindGroup::Motorcycle));
+    if light && column == KindGroup::Car && hit.who == Some(partner) && hit.object == Some(SUBJECT) {
+        return unchanged;
     }
     let acting = |actor: &Actor| is(*actor) && !story.world.actors[*actor].several;
     let named = story.frames[..=first].iter().rev().filter_map(|frame| frame.who).find(acting);

@@ -83,6 +83,10 @@ pub(super) fn controls(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<Control>
 /// The signal or sign that these words begin with, the state of it, and how many of them name it.
 fn named(words: &[&str]) -> Option<(ControlDevice, Option<SignalState>, usize)> {
     Some(match words {
+        // "a right-on-red".
+        ["right" | "left", "on", "red", ..] | ["right" | "left", "turn", "on", "red", ..] => {
+            (ControlDevice::Signal, Some(SignalState::Red), 3)
+        }
         ["red", "light" | "signal" | "traffic", ..] | ["red", "left" | "right", "turn", ..] => {
             (ControlDevice::Signal, Some(SignalState::Red), 2)
         }

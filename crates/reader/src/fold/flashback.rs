@@ -20,6 +20,9 @@ pub(super) fn told_back(story: &Story, contacts: &Contacts) -> Range<usize> {
     if !anew.is_empty() {
         return anew;
     }
+    if leads_to_the_contact(story, contacts, lead + 1) {
+        return lead + 1..lead + 2;
+    }
     if story.frames.iter().filter(acts).any(|frame| frame.sentence < lead) {
         return told_again(story, contact);
     }
@@ -52,6 +55,38 @@ fn begins_anew(story: &Story, contacts: &Contacts, contact: &Frame) -> Range<usi
     again
         .filter(|again| !(next..=*again).any(|sentence| is_aftermath(story, sentence)))
         .map_or(0..0, |again| next..again + 1)
+}
+
+/// "It braked hard before making contact", "was still slowing down prior to the impact", of one of the two: what led to it.
+fn leads_to_the_contact(story: &Story, contacts: &Contacts, sentence: usize) -> bool {
+    let Some(range) = story.sentences.get(sentence) else { return false };
+    let words: Vec<&str> = story.tokens[range.first..range.end].iter().map(|token| token.text.as_str()).collect();
+    let touch =
+        |word: &&str| matches!(*word, "contact" | "impact" | "collision" | "colliding" | "collided" | "impacting");
+    let names = |rest: &[&str]| rest.iter().take(4).any(touch);
+    let until = (1..words.len()).find(|&at| match words[at] {
+        "before" => names(&words[at + 1..]),
+        "prior" => words.get(at + 1) == Some(&"to") && names(&words[at + 2..]),
+        _ => false,
+    });
+    let Some(until) = until.map(|at| range.first + at) else { return false };
+    let one = |actor: Option<usize>| actor == Some(SUBJECT) || actor.is_some() && actor == contacts.partner;
+    let mut told = story.frames.iter().filter(|frame| frame.sentence == sentence && !frame.aside);
+    let leads = told.any(|frame| frame.first < until && one(frame.who) && frame.act().is_some() && frame.happened());
+    leads && !is_aftermath(story, sentence)
+}
+
+/// "It struck a van. It was coming to a stop before it made contact": who strikes then had only slowed.
+pub(super) fn stops_too_late(story: &mut Story, contacts: &Contacts) {
+    let Some(contact) = contacts.first.map(|number| &story.frames[number]) else { return };
+    let (striker, next) = (contact.who, contact.sentence + 1);
+    if !contact.is_contact() || !leads_to_the_contact(story, contacts, next) {
+        return;
+    }
+    let stops = |frame: &&mut Frame| frame.act() == Some(Act::Stop) && frame.form == Form::Ing && frame.who == striker;
+    for frame in story.frames.iter_mut().filter(|frame| frame.sentence == next).filter(stops) {
+        frame.sense = Sense::Act(Act::Slow);
+    }
 }
 
 /// "Initially" stands among the first words of a sentence that says how it began. [tokens]

@@ -230,7 +230,7 @@ impl Reading<'_> {
     }
 
     /// Whether a sentence begins with "prior to the collision".
-    fn looks_back_from_crash(&self, sentence: usize) -> bool {
+    pub fn looks_back_from_crash(&self, sentence: usize) -> bool {
         let sentence = self.story.sentences[sentence];
         let words: Vec<&str> =
             self.story.tokens[sentence.first..sentence.end].iter().take(5).map(|token| token.text.as_str()).collect();
@@ -289,8 +289,11 @@ pub fn account(incident: &Incident) -> Option<Account> {
     let partner = record.partner.known().and_then(partner_word);
     let own =
         Own { kind: own_kind(record), make: make.as_deref(), company: &company, vehicle: &record.vehicle, partner };
-    let story = story(text, own);
+    let mut story = story(text, own);
     let contacts = Contacts::find(&story, record);
+    let of_first = contacts.of_second.then(|| without_contact(record));
+    let record = of_first.as_ref().unwrap_or(record);
+    flashback::stops_too_late(&mut story, &contacts);
     let back = flashback::told_back(&story, &contacts);
     let reading = Reading { text, record, story, contacts, back };
     let own_rider = hurts_its_own_rider(&reading);
@@ -326,6 +329,7 @@ pub fn account(incident: &Incident) -> Option<Account> {
         across::settle(&reading, &mut account.sv, partner);
     }
     party::columns(&reading, &mut account, own_rider);
+    touched::keep_damaged_side(&reading, &mut account.sv.zones);
     // A gate that swings open is no door.
     let kind = account.partner.as_ref().and_then(|partner| told(&partner.kind));
     let is_thing = kind.is_some_and(|kind| kind.group() == KindGroup::Object && kind != Kind::Door);
@@ -364,6 +368,18 @@ pub fn account(incident: &Incident) -> Option<Account> {
         party::refine(&mut partner.zones, &record.cp_zones, "CP Contact Area");
     }
     Some(account)
+}
+
+/// A record without what its columns tell of the contact.
+fn without_contact(record: &CrashRecord) -> CrashRecord {
+    CrashRecord {
+        partner: Coded::Blank,
+        cp_movement: Coded::Blank,
+        sv_zones: Vec::new(),
+        cp_zones: Vec::new(),
+        sv_speed_mps: None,
+        ..record.clone()
+    }
 }
 
 /// Who comes across from a sidewalk along which it went is in no lane of the road.
@@ -496,7 +512,8 @@ fn door(reading: &Reading<'_>) -> Option<Fact<Striker>> {
     let opened = frames
         .iter()
         .enumerate()
-        .find(|(number, frame)| frame.act() == Some(Act::OpenDoor) && frame.happened() && !reading.is_after(*number));
+        .find(|(number, frame)| frame.act() == Some(Act::OpenDoor) && frame.happened() && !reading.is_after(*number))
+        .filter(|(number, frame)| !stood_open(reading, *number, frame));
     let door = |piece: &Option<Piece>| piece.as_ref().is_some_and(|piece| piece.door);
     let stands_open = |frame: &Frame| {
         let words = &reading.story.tokens[..reading.story.sentences[frame.sentence].end];
@@ -523,6 +540,20 @@ fn door(reading: &Reading<'_>) -> Option<Fact<Striker>> {
     let opens = frame.act() == Some(Act::OpenDoor);
     let (first, end) = if opens { entry::of_door(reading, frame) } else { (frame.first, frame.end) };
     Some(reading.told(value, first, end))
+}
+
+/// "Its passengers opened the doors and got out. The van passed, and its flank touched it": the crash is none of a door where another came
+/// by later, and touched something else.
+fn stood_open(reading: &Reading<'_>, number: usize, opened: &Frame) -> bool {
+    let frames = &reading.story.frames;
+    let Some(contact) = reading.contacts.first.filter(|contact| *contact > number) else { return false };
+    let crash = &frames[contact];
+    let part = |piece: &Option<Piece>| piece.as_ref().is_some_and(|piece| !piece.door && !piece.parts.is_empty());
+    let passes = |frame: &Frame| {
+        let by = matches!(frame.act(), Some(Act::Pass | Act::Drift | Act::LaneChange));
+        by && frame.who != opened.who && frame.sentence > opened.sentence && frame.happened()
+    };
+    part(&crash.with) && part(&crash.on) && frames[number..contact].iter().any(passes)
 }
 
 fn injury(reading: &Reading<'_>) -> Option<Fact<bool>> {

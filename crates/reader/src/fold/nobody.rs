@@ -22,7 +22,10 @@ pub(super) fn is_one_of_the_two(
     let another = inside(&["another", "second", "third"]);
     // "autonomous truck's mirror", "Olli is an 8-passenger shuttle", "the Kodiak AV Class 8 semi-truck".
     let own = idle && inside(&["autonomous", "automated"]) && !inside(&["other"]);
-    let is = idle && matches!(back(1), "is") && story.world.actors[actor].mentions == 1;
+    // "which appears to be a cat".
+    let seems = matches!((back(2), back(1)), ("to", "be"))
+        && ["appear", "seem", "believe"].iter().any(|stem| back(3).starts_with(stem));
+    let is = idle && (matches!(back(1), "is") || seems) && story.world.actors[actor].mentions == 1;
     let class = idle_or_drives(acts) && back(2) == "class" && back(1).parse::<u8>().is_ok();
     let told_once = is_of_headline(reading, actor, (first, end)) && idle;
     let headline = told_once && (whereabouts::place_of(reading, actor).is_none() || kind == Kind::Pickup);
@@ -35,6 +38,7 @@ pub(super) fn is_one_of_the_two(
     let apposed = kind == Kind::Vehicle && word(Some(end)) == "," && partner_begins == Some(end + 1);
     let the_other = idle && partner.is_some() && word(Some(first)) == "the" && word(Some(first + 1)) == "other";
     own && !another
+        || is_ridden_by_partner(reading, kind, first) && idle
         || is
         || class
         || headline
@@ -56,6 +60,17 @@ fn known_as_two(reading: &Reading<'_>, actor: Actor, (first, _): (usize, usize))
     let others = story.world.actors[1..].iter().filter(|known| one(known)).count();
     let two = crash && matches!(back(1), "with" | "involving") && word(Some(first)) == "two";
     two && others >= 2 && reading.contacts.partner.is_some_and(|partner| partner != actor)
+}
+
+/// "A cyclist on an electric bicycle", "a man riding a scooter": what the partner rides.
+fn is_ridden_by_partner(reading: &Reading<'_>, kind: Kind, first: usize) -> bool {
+    let story = &reading.story;
+    let ridden =
+        |kind: Kind| matches!(kind.group(), KindGroup::Cyclist | KindGroup::Motorcycle) || kind == Kind::Scooter;
+    let rides = |kind: Kind| matches!(kind.group(), KindGroup::Cyclist | KindGroup::Motorcycle | KindGroup::OnFoot);
+    let on = first.checked_sub(1).is_some_and(|at| matches!(story.tokens[at].text.as_str(), "on" | "riding"));
+    let partner = reading.contacts.partner.and_then(|partner| story.world.actors[partner].kind);
+    on && ridden(kind) && partner.is_some_and(rides)
 }
 
 /// Whether the headline of the crash names somebody so: "a collision with a van". It is the partner.
@@ -165,7 +180,23 @@ pub(super) fn is_remark(reading: &Reading<'_>, (first, end): (usize, usize), act
     let valet = inside(&["valet"]) && (word(Some(end)) == "parking" || inside(&["automated"]));
     let restricted = inside(&["traffic"])
         && (end..end + 3).any(|at| matches!(word(Some(at)), "restricted" | "prohibited" | "permitted"));
-    either || called || required || taken_for || looked_for || signed || mounted || valet || restricted
+    // "was required to yield to through traffic", "caused vehicle damage".
+    let through = usize::from(back(1) == "through");
+    let to_yield = (back(3 + through), back(2 + through), back(1 + through)) == ("to", "yield", "to");
+    let must = |stem: &&str| back(4 + through).starts_with(*stem);
+    let owed = to_yield && ["require", "suppose", "oblige", "obligat", "expect", "instruct"].iter().any(must);
+    let of_damage = matches!(word(Some(end)), "damage" | "damages" | "repair" | "repairs" | "maintenance");
+    either
+        || owed
+        || of_damage
+        || called
+        || required
+        || taken_for
+        || looked_for
+        || signed
+        || mounted
+        || valet
+        || restricted
 }
 
 /// Whether somebody of whom no act is told is the partner, as the first sentence of the story named it: that tells the crash, and the

@@ -379,7 +379,9 @@ pub(crate) fn settle(account: &Account) -> Option<Fact<Origin>> {
             Some(origin) => {
                 let left = scene.weigh(Way::Cross(LeftRight::Left)).max(scene.weigh(Way::Beside(LeftRight::Left)));
                 let right = scene.weigh(Way::Cross(LeftRight::Right)).max(scene.weigh(Way::Beside(LeftRight::Right)));
+                let met = turned_towards(&account.sv, cp);
                 let side = match left.cmp(&right) {
+                    _ if met.is_some() => met?.other(),
                     std::cmp::Ordering::Greater => LeftRight::Left,
                     std::cmp::Ordering::Less => LeftRight::Right,
                     std::cmp::Ordering::Equal => return None,
@@ -404,6 +406,18 @@ pub(crate) fn settle(account: &Account) -> Option<Fact<Origin>> {
     let have = scene.weigh(told_way).max(kin) + prior;
     let same_family = matches!((told_way, way), (Way::Behind, Way::Beside(_)));
     (weight > have && !same_family).then(|| Fact::by_rule(way.origin(), RULE))
+}
+
+/// The side of a place out of which one turned that met a standing one with its left on the left: of a turn to the right, the left.
+fn turned_towards(sv: &Party, cp: &Party) -> Option<LeftRight> {
+    let on_left = |party: &Party| {
+        let left = |zone: &Z| matches!(zone, Z::Left | Z::FrontLeft | Z::RearLeft);
+        let zones = party.zone_values();
+        zones.iter().any(left) && zones.iter().all(|zone| left(zone) || *zone == Z::Front)
+    };
+    let turned = cp.acts.iter().find(|fact| fact.act == Act::Turn && !fact.after_contact)?;
+    let stands = told(&sv.state).is_some_and(ContactState::stands);
+    turned.side.map(LeftRight::other).filter(|_| stands && on_left(sv) && on_left(cp))
 }
 
 #[cfg(test)]

@@ -20,7 +20,11 @@ pub(super) fn zones(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<ContactZone
         let ours = frame.is_contact()
             && (pair.contains(&partner) && (pair.contains(&Some(SUBJECT)) || pair.contains(&None))
                 // "causing a scrape on its door".
-                || frame.sentence == reading.story.frames[first].sentence && pair == [None, Some(SUBJECT)]);
+                || frame.sentence == reading.story.frames[first].sentence && pair == [None, Some(SUBJECT)]
+                // "It struck a plate. Contact was made at the underside."
+                || frame.sense == Sense::ContactMade
+                    && frame.sentence == reading.story.frames[first].sentence + 1
+                    && pair == [None, Some(SUBJECT)]);
         let same = number == first || (all.is_empty() && ours);
         if !same {
             continue;
@@ -108,6 +112,32 @@ fn of_trailer(reading: &Reading<'_>, actor: Actor, frame: &Frame) -> Option<(usi
     let first = (trailer.saturating_sub(OF_TRAILER_WITHIN).max(from)..trailer).find(part)?;
     let article = first.checked_sub(1).filter(|at| *at >= from && matches!(word(*at), "the" | "its" | "a"));
     (to - trailer <= OF_TRAILER_WITHIN).then(|| (article.unwrap_or(first), trailer + 1))
+}
+
+/// "struck the parked van, damaging its bumper and left headlamp", of a column that ticks both corners of the front: the left one.
+pub(super) fn keep_damaged_side(reading: &Reading<'_>, zones: &mut Vec<Fact<ContactZone>>) {
+    use ContactZone as Z;
+    let Some(crash) = reading.contacts.first.map(|number| &reading.story.frames[number]) else { return };
+    let damages = |frame: &&Frame| {
+        frame.sense == Sense::Damage
+            && frame.sentence == crash.sentence
+            && !frame.negated
+            && frame.first > crash.first
+            && (frame.object == Some(SUBJECT) || frame.on.is_some() && frame.object.is_none())
+    };
+    let Some(damage) = reading.story.frames.iter().find(damages) else { return };
+    let end = reading.story.sentences[damage.sentence].end;
+    let words = reading.story.tokens[damage.first..end].iter().map(|token| token.text.as_str());
+    let words: Vec<&str> = words.take_while(|word| !matches!(*word, "other" | "while" | "when" | "which")).collect();
+    let left = words.iter().any(|word| matches!(*word, "left" | "driver"));
+    let right = words.iter().any(|word| matches!(*word, "right" | "passenger"));
+    let on_left = |zone: Z| matches!(zone, Z::FrontLeft | Z::Left | Z::RearLeft);
+    let on_right = |zone: Z| matches!(zone, Z::FrontRight | Z::Right | Z::RearRight);
+    let ticked = |fact: &Fact<Z>| !fact.source.is_told();
+    let both = zones.iter().any(|fact| on_left(fact.value)) && zones.iter().any(|fact| on_right(fact.value));
+    if both && left != right && zones.iter().all(ticked) {
+        zones.retain(|fact| if left { !on_right(fact.value) } else { !on_left(fact.value) });
+    }
 }
 
 /// Where somebody was touched by what the sentence of the crash says of the damage, or the headline of a rear-end crash.

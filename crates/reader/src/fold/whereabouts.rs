@@ -35,6 +35,7 @@ pub(crate) fn place_of(reading: &Reading<'_>, actor: Actor) -> Option<Fact<Origi
         .or_else(|| by_another(&clues))
         .or_else(|| in_queue_of_partner(&clues))
         .or_else(|| in_next_lane(&clues))
+        .or_else(|| goes_its_way(&clues))
 }
 
 /// The place that a relation to the subject vehicle tells.
@@ -186,6 +187,33 @@ fn in_next_lane(clues: &Clues<'_>) -> Option<Fact<Origin>> {
     let rule = "in the next lane, on a side that is assumed where no word tells it";
     next.then(|| Fact::by_rule(Origin::Beside { side }, rule))
 }
+
+/// "went around the truck to the left and yielded to traffic in its direction of travel": on the side to which it goes, else behind it.
+fn goes_its_way(clues: &Clues<'_>) -> Option<Fact<Origin>> {
+    let (reading, actor) = (clues.reading, clues.actor);
+    let known = &reading.story.world.actors[actor];
+    let (first, end) = known.kind_tokens.filter(|_| known.several && known.kind.is_some_and(Kind::is_vehicle))?;
+    let tokens = &reading.story.tokens;
+    let words: Vec<&str> = tokens[end..]
+        .iter()
+        .take(WAY_WORDS)
+        .take_while(|token| token.text != ".")
+        .map(|token| token.text.as_str())
+        .collect();
+    let own = |at: usize| at > 0 && matches!(words[at - 1], "its" | "same" | "'s");
+    let way = words.windows(3).position(|run| run == ["direction", "of", "travel"]).is_some_and(own);
+    let (_, yields) =
+        reading.before(SUBJECT).find(|(_, frame)| frame.sense == Sense::Yield && frame.object == Some(actor))?;
+    let over = |frame: &Frame| {
+        matches!(frame.act(), Some(Act::Pass | Act::LaneChange | Act::Drift | Act::Swerve | Act::PullOut))
+    };
+    let goes = |(_, frame): (usize, &Frame)| frame.side.filter(|_| over(frame) && frame.first < yields.first);
+    let side = reading.before(SUBJECT).filter_map(goes).last();
+    way.then(|| reading.told(side.map_or(Origin::Behind, |side| Origin::Beside { side }), first, end))
+}
+
+/// The words that say which way somebody goes stand no farther behind its name. [tokens]
+const WAY_WORDS: usize = 12;
 
 /// "a man standing on the south side of the road": left of who goes west.
 fn at_side_of_road(clues: &Clues<'_>) -> Option<Fact<Origin>> {

@@ -40,8 +40,18 @@ impl Parser<'_> {
             {
                 return self.note(last.actor, relation);
             }
+            // "was waiting to pass a van in front", "went around one directly ahead of it": whom it was to pass.
+            let taken = &self.frames[frame];
+            let wished = taken.act() == Some(Act::Pass) && relation == Relation::Ahead && taken.who == Some(SUBJECT);
+            if let (true, Some(object)) = (wished && !taken.described, taken.object.filter(|object| *object != SUBJECT))
+                && to.is_none_or(|to| to == SUBJECT || to == object)
+                && carry.last.as_ref().is_some_and(|last| last.actor == object)
+            {
+                return self.note(object, relation);
+            }
             // "stopped behind a van": who stopped. "yield to a car ahead of the van": the car.
-            let of_object = carry.last.is_some() && (fell_off || carry.governed_object(&self.frames[frame]));
+            let governed = || carry.governed_object(&self.frames[frame]) && !self.comes_over(frame, relation, carry);
+            let of_object = carry.last.is_some() && (fell_off || governed());
             if of_object || self.is_of_passed(to, carry) {
                 who = carry.last.as_ref().map(|last| last.actor);
             } else {
@@ -117,6 +127,17 @@ impl Parser<'_> {
             }
             _ => {}
         }
+    }
+
+    /// "changing into the AV's lane from the left": who comes from there, and not whose lane it is.
+    fn comes_over(&self, frame: usize, relation: Relation, carry: &Carry) -> bool {
+        let of_subject = carry.last.as_ref().is_some_and(|last| last.actor == SUBJECT);
+        let aside = matches!(relation, Relation::Left | Relation::Right);
+        let over = matches!(
+            self.frames[frame].act(),
+            Some(Act::LaneChange | Act::Drift | Act::Swerve | Act::Enter | Act::PullOut | Act::Turn)
+        );
+        of_subject && aside && over
     }
 
     /// "Tires fell off a trailer pulled by a van traveling ahead of it": of tires the sentence is, and the van travels there.
@@ -219,12 +240,21 @@ impl Parser<'_> {
         {
             self.frames[frame].side = Some(side);
             self.frames[frame].end = placed.end;
+            // "overtaking it from the left adjacent lane": there it was, too.
+            let who =
+                self.frames[frame].who.filter(|who| *who != SUBJECT && self.frames[frame].object == Some(SUBJECT));
+            let words = &self.tokens[placed.first..placed.end];
+            let lane = words[0].text == "from" && words.iter().any(|token| token.text == "lane");
+            if let Some(who) = who.filter(|_| lane) {
+                self.note(who, relation);
+            }
             if governs {
                 carry.relation = None;
                 carry.preposition = Some("around");
             }
             return;
         }
+        self.leaves_lane(side, placed, carry);
         // "struck the AV on the passenger side": where it was struck.
         let struck = |frame: &super::Frame| frame.is_contact() && frame.object.is_some() && frame.on.is_none();
         if let (Some(part), Some(frame), false) = (
@@ -248,6 +278,17 @@ impl Parser<'_> {
             carry.preposition = None;
         } else {
             self.relate(relation, None, carry);
+        }
+    }
+
+    /// "moved over from the right adjacent lane": to the left.
+    fn leaves_lane(&mut self, side: Option<LeftRight>, placed: &Placed, carry: &Carry) {
+        let words = &self.tokens[placed.first..placed.end];
+        let lane = words[0].text == "from" && words.iter().any(|token| token.text == "lane");
+        let (Some(side), Some(frame), true) = (side, carry.frame, lane) else { return };
+        let taken = &mut self.frames[frame];
+        if matches!(taken.act(), Some(Act::LaneChange | Act::Drift | Act::Swerve)) && taken.side.is_none() {
+            taken.side = Some(side.other());
         }
     }
 
@@ -400,6 +441,10 @@ impl Parser<'_> {
             return;
         }
         let stands = (lane, placed.first, placed.end);
+        if let Some(other) = self.met_in_lane(placed, carry).filter(|_| preposition == Some("in")) {
+            self.world.actors[other].lane.get_or_insert(stands);
+            return;
+        }
         let Some(frame) = carry.frame else {
             if let Some(subject) = &carry.subject {
                 self.world.actors[subject.actor].lane.get_or_insert(stands);
@@ -429,6 +474,19 @@ impl Parser<'_> {
         if let Some(who) = who.filter(|_| !(into || enters) || from) {
             self.world.actors[who].lane.get_or_insert(stands);
         }
+    }
+
+    /// "slowed to yield to a taxi in the rightmost lane", "touched the side of a van in the turn lane": of whom the lane is told. Who stops
+    /// behind traffic in a lane is in that lane too.
+    fn met_in_lane(&self, placed: &Placed, carry: &Carry) -> Option<Actor> {
+        let word = |at: usize| self.tokens.get(at).map_or("", |token| token.text.as_str());
+        let last = carry.last.as_ref().filter(|last| last.actor != SUBJECT && last.person.is_none())?;
+        let frame = &self.frames[carry.frame?];
+        let met = matches!(frame.sense, Sense::Yield | Sense::See | Sense::Act(Act::Slow)) || frame.is_contact();
+        let at_once = word(last.end) == "in" && last.end + 2 >= placed.first;
+        let known = &self.world.actors[last.actor];
+        let own = frame.who == Some(SUBJECT) && frame.object == Some(last.actor) && !known.several;
+        (met && at_once && own && known.kind.is_some_and(Kind::is_vehicle)).then_some(last.actor)
     }
 
     /// Whether a lane is that of others between whom somebody comes out, of a place in it, or one that the own is adjacent to: "from a gap

@@ -68,8 +68,17 @@ impl Parser<'_> {
         // "It passed the van which was waiting while also running the light": it ran the light.
         let also = |placed: &&Placed| !matches!(placed.chunk, Chunk::Word);
         let ing = matches!(behind.iter().find(also).map(|placed| &placed.chunk), Some(Chunk::Verb(_, Form::Ing)));
-        if joint == Joint::While && ing && carry.relative && carry.has_verb && carry.main.is_some() {
+        if joint == Joint::While
+            && ing
+            && carry.relative
+            && carry.has_verb
+            && carry.main.is_some()
+            && !self.did_to(carry)
+        {
             (carry.subject, carry.relative) = (carry.main.clone(), false);
+        }
+        if let Some(mention) = self.seen_leaving(joint, behind, carry) {
+            carry.subject = Some(mention);
         }
         self.leave_place(carry);
         carry.clause += 1;
@@ -109,6 +118,31 @@ impl Parser<'_> {
             // "while stopped", "before turning": of whom the clause is about, or of who is named next.
             carry.has_verb = carry.subject.is_some();
         }
+    }
+
+    /// "It stopped when it saw a truck attempting to turn while leaving a lot": who stops leaves none.
+    fn seen_leaving(&self, joint: Joint, behind: &[Placed], carry: &Carry) -> Option<Mention> {
+        let verb = behind.iter().map(|placed| &placed.chunk).find(|chunk| !matches!(chunk, Chunk::Word))?;
+        let leaves = matches!(verb, Chunk::Verb(Sense::Act(Act::PullOut), Form::Ing));
+        let who = self.frames[carry.frame?].who.filter(|who| *who != SUBJECT && joint == Joint::While && leaves)?;
+        let here = |frame: &&Frame| frame.sentence == self.sentence && frame.who == Some(SUBJECT);
+        let mut own = self.frames.iter().filter(here);
+        let stops = own.any(|frame| matches!(frame.act(), Some(Act::Stop | Act::Slow | Act::Hold)));
+        let last = carry.last.clone().filter(|last| last.actor == who);
+        last.filter(|_| stops && carry.subject.as_ref().is_some_and(|subject| subject.actor == SUBJECT))
+    }
+
+    /// "was struck by a van that crossed the line while heading east": whoever did it to somebody goes on, and not whom it was done to.
+    fn did_to(&self, carry: &Carry) -> bool {
+        let done_by = |frame: &Frame| {
+            let who = carry.subject.as_ref().map(|subject| subject.actor);
+            frame.sentence == self.sentence
+                && frame.passive
+                && frame.is_contact()
+                && frame.who.is_some()
+                && frame.who == who
+        };
+        self.frames.iter().rev().take(3).any(done_by)
     }
 
     /// "A van passed it and the car behind it by crossing the line": a second one that was passed, and nobody who does anything.

@@ -9,6 +9,7 @@ mod named;
 mod object;
 mod parser;
 mod pronoun;
+mod reword;
 mod row;
 mod sense;
 mod subject;
@@ -168,11 +169,7 @@ pub fn story(text: &str, own: Own<'_>) -> Story {
             COMPANY.clone_into(&mut tokens[at].text);
         }
     }
-    name_system(&mut tokens);
-    hold_by_hand(&mut tokens);
-    name_passenger_cars(&mut tokens);
-    name_loose_boards(&mut tokens);
-    part_owners(&mut tokens);
+    reword::apply(&mut tokens);
     let sentences = crate::token::sentences(&tokens);
     let (mut standing, mut frames, mut world) = best(&tokens, &sentences, own);
     // "A gleeper struck it": who is meant is told by the record.
@@ -214,6 +211,9 @@ pub fn story(text: &str, own: Own<'_>) -> Story {
             (one.object, other.object) = (other.who, one.who);
         }
     }
+    strikes_both(&mut frames, &mut world, &tokens);
+    stood_itself(&mut frames, &tokens, &sentences);
+    fall_once(&mut frames, &world);
     let about: Vec<(usize, Actor)> = frames
         .iter()
         .filter(|frame| frame.act().is_some() && !frame.aside)
@@ -229,121 +229,59 @@ pub fn story(text: &str, own: Own<'_>) -> Story {
     Story { tokens, sentences, standing, frames, world }
 }
 
-/// "The system issued a brake command", "the ADS braked": the vehicle that it drives.
-fn name_system(tokens: &mut [Token]) {
-    const DOES: [&str; 16] = [
-        "issued",
-        "applied",
-        "commanded",
-        "initiated",
-        "braked",
-        "slowed",
-        "decelerated",
-        "steered",
-        "swerved",
-        "executed",
-        "performed",
-        "nudged",
-        "stopped",
-        "began",
-        "started",
-        "requested",
-    ];
-    for at in 1..tokens.len().saturating_sub(2) {
-        let named = matches!(tokens[at].text.as_str(), "system" | "ads") && tokens[at - 1].text == "the";
-        let adverb = usize::from(tokens[at + 1].text.ends_with("ly"));
-        if named && DOES.contains(&tokens[at + 1 + adverb].text.as_str()) {
-            "av".clone_into(&mut tokens[at].text);
-        }
-    }
-}
-
-/// "a hand held stop sign", "holding up a stop sign": a paddle, and no sign that stands there.
-fn hold_by_hand(tokens: &mut [Token]) {
-    for at in 1..tokens.len().saturating_sub(1) {
-        if tokens[at].text != "stop" || tokens[at + 1].text != "sign" {
+/// "A man threw a bottle at both cars", where one other is known at most: the subject vehicle is one of the two.
+fn strikes_both(frames: &mut [Frame], world: &mut World, tokens: &[Token]) {
+    let vehicle = |known: &crate::world::Known| known.kind.is_some_and(recrash_model::account::Kind::is_vehicle);
+    for frame in frames.iter_mut().filter(|frame| frame.is_contact()) {
+        let (Some(who), Some(pair)) = (frame.who, frame.object.filter(|pair| *pair != SUBJECT)) else { continue };
+        let known = &world.actors[pair];
+        let Some((first, _)) = known.kind_tokens.filter(|_| known.several && vehicle(known) && who != SUBJECT) else {
             continue;
-        }
-        let held = tokens[at.saturating_sub(4)..at].iter().any(|token| {
-            matches!(
-                token.text.as_str(),
-                "held" | "handheld" | "holding" | "holds" | "waving" | "carrying" | "wielding"
-            )
-        });
-        let paddle = tokens.get(at + 2).is_some_and(|next| next.text == "paddle");
-        if held || paddle {
-            for (token, name) in tokens[at..].iter_mut().zip(["signal", "paddle"]) {
-                name.clone_into(&mut token.text);
-            }
-        }
-    }
-}
-
-/// "An unattended skateboard": nobody stands on it, also where it is named without that word.
-fn name_loose_boards(tokens: &mut [Token]) {
-    let alone =
-        |word: &str| matches!(word, "unattended" | "riderless" | "unoccupied" | "runaway" | "abandoned" | "loose");
-    if !tokens.windows(2).any(|pair| alone(&pair[0].text) && pair[1].text == "skateboard") {
-        return;
-    }
-    for token in tokens.iter_mut().filter(|token| token.text == "skateboard") {
-        "object".clone_into(&mut token.text);
-    }
-}
-
-/// "The side of the trucks trailer", told of a truck: its apostrophe was lost.
-fn part_owners(tokens: &mut Vec<Token>) {
-    const OWNERS: [(&str, &str); 6] = [
-        ("trucks", "truck"),
-        ("tractors", "tractor"),
-        ("pickups", "pickup"),
-        ("vans", "van"),
-        ("suvs", "suv"),
-        ("cars", "car"),
-    ];
-    const OWNED: [&str; 3] = ["trailer", "cab", "bed"];
-    for at in (1..tokens.len().saturating_sub(1)).rev() {
-        let Some((_, one)) = OWNERS.iter().find(|(several, _)| tokens[at].text == *several) else { continue };
-        let before = &tokens[at.saturating_sub(OWNER_WORDS)..at];
-        let the = before.iter().rposition(|token| token.text == "the");
-        let many = |token: &Token| crate::token::number(&token.text).is_some() || token.text == "both";
-        let alone =
-            the.is_some_and(|the| !before[the..].iter().any(many)) && !before.iter().any(|token| token.text == "both");
-        let known = tokens[..at].iter().any(|token| token.text == *one);
-        if !(OWNED.contains(&tokens[at + 1].text.as_str()) && alone && known) {
-            continue;
-        }
-        let (start, end) = (tokens[at].end - 1, tokens[at].end);
-        (*one).clone_into(&mut tokens[at].text);
-        tokens[at].end = start;
-        let genitive = Token { start, end, text: "'s".to_owned(), kind: TokenKind::Word, capital: false };
-        tokens.insert(at + 1, genitive);
-    }
-}
-
-/// So many words before an owner may belong to its name: "the large red". [tokens]
-const OWNER_WORDS: usize = 4;
-
-/// "The passenger continued to reverse", told of a passenger car: its second word is left out.
-fn name_passenger_cars(tokens: &mut [Token]) {
-    let pair = |pair: &[Token], one: &str, other: &str| pair[0].text == one && pair[1].text == other;
-    if !tokens.windows(2).any(|run| pair(run, "passenger", "car") || pair(run, "passenger", "vehicle")) {
-        return;
-    }
-    for at in 1..tokens.len().saturating_sub(3) {
-        let word = |ahead: usize| tokens[at + ahead].text.as_str();
-        let to =
-            |ahead: usize| word(ahead) == "to" && matches!(word(ahead + 1), "reverse" | "back" | "proceed" | "drive");
-        let drives = match word(1) {
-            "reversed" | "accelerated" | "reversing" => true,
-            "proceeded" => matches!(word(2), "forward" | "straight" | "ahead"),
-            "continued" => matches!(word(2), "forward" | "straight" | "reversing") || to(2),
-            "began" | "started" => word(2) == "reversing" || to(2),
-            _ => false,
         };
-        if tokens[at - 1].text == "the" && word(0) == "passenger" && drives {
-            "car".clone_into(&mut tokens[at].text);
+        let both = (first.saturating_sub(1)..=first).any(|at| tokens[at].text == "both");
+        let before = |other: &crate::world::Known| other.kind_tokens.is_some_and(|(at, _)| at < first);
+        let others = world.actors.iter().enumerate().skip(1);
+        let named = others
+            .filter(|(actor, other)| ![who, pair].contains(actor) && vehicle(other) && !other.several && before(other));
+        if both && named.count() <= 1 {
+            frame.object = Some(SUBJECT);
+            world.actors[pair].mentions = 0;
         }
+    }
+}
+
+/// "A cyclist fell while passing it. ... A cyclist came up from behind, passed it and fell": the first sentence told what came of it.
+fn fall_once(frames: &mut Vec<Frame>, world: &World) {
+    let rides = |actor: Actor| {
+        let kind = world.actors[actor].kind.map(recrash_model::account::Kind::group);
+        matches!(kind, Some(KindGroup::Cyclist | KindGroup::Motorcycle | KindGroup::OnFoot))
+    };
+    let falls = |frame: &&Frame| frame.act() == Some(Act::Fall) && frame.happened();
+    let Some(first) = frames.first().map(|frame| frame.sentence) else { return };
+    let early = frames.iter().filter(falls).find(|frame| frame.sentence == first).and_then(|frame| frame.who);
+    let Some(who) = early.filter(|who| rides(*who)) else { return };
+    if frames.iter().filter(falls).any(|frame| frame.who == Some(who) && frame.sentence > first) {
+        frames.retain(|frame| frame.sentence > first || frame.who != Some(who) || frame.is_contact());
+    }
+}
+
+/// "At the time of the contact, was stopped in traffic", "Was turning left": a sentence without its subject is of the subject vehicle.
+fn stood_itself(frames: &mut [Frame], tokens: &[Token], sentences: &[Sentence]) {
+    let mut begun: Vec<usize> = Vec::new();
+    for frame in frames.iter_mut() {
+        let first = sentences[frame.sentence].first;
+        let from = frame.first - usize::from(frame.first > first && tokens[frame.first].text != "was");
+        let head = from == first || from > first && tokens[from - 1].text == "," && tokens[first].text == "at";
+        if frame.who.is_none()
+            && !frame.passive
+            && frame.act().is_some()
+            && tokens[from].text == "was"
+            && head
+            && !begun.contains(&frame.sentence)
+        {
+            frame.who = Some(SUBJECT);
+        }
+        begun.push(frame.sentence);
     }
 }
 

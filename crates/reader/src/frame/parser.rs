@@ -5,7 +5,7 @@ use crate::chunk::{Chunk, Joint, Piece, Placed, Spot, chunks};
 use crate::lexicon::{Lexicon, Occupant, Progress, Relation, Sense};
 use crate::token::{Sentence, Token};
 use crate::world::{Actor, SUBJECT, World};
-use recrash_model::account::{Act, LeftRight};
+use recrash_model::account::{Act, Kind, KindGroup, LeftRight};
 
 pub(super) struct Parser<'a> {
     pub(super) tokens: &'a [Token],
@@ -110,6 +110,7 @@ impl Parser<'_> {
             self.step(&all, at, &mut carry);
         }
         self.share(begun);
+        self.announce_fall(begun);
         if let Some(main) = &carry.main {
             self.world.topic = main.actor;
             if !self.world.actors[main.actor].acts() && main.actor != SUBJECT {
@@ -134,6 +135,20 @@ impl Parser<'_> {
                 places.into_iter().for_each(|place| self.world.actors[who].place(place, self.sentence));
             }
         }
+    }
+
+    /// "It was driving north when a cyclist fell while passing it": the first sentence tells what came of it, and the story brings the cyclist
+    /// on anew.
+    fn announce_fall(&mut self, begun: usize) {
+        let first = self.frames.first().is_none_or(|frame| frame.sentence == self.sentence);
+        let rides = |kind: Kind| matches!(kind.group(), KindGroup::Cyclist | KindGroup::Motorcycle | KindGroup::OnFoot);
+        let frames = &self.frames[begun.min(self.frames.len())..];
+        let falls = frames.iter().find(|frame| frame.act() == Some(Act::Fall) && frame.happened());
+        let Some(who) = falls.and_then(|frame| frame.who).filter(|who| first && *who != SUBJECT) else { return };
+        let meets =
+            frames.iter().any(|frame| frame.who == Some(who) && frame.object == Some(SUBJECT) && !frame.is_contact());
+        let known = &mut self.world.actors[who];
+        known.announced |= meets && !known.several && known.mentions == 1 && known.kind.is_some_and(rides);
     }
 
     /// Reads one chunk.

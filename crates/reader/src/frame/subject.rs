@@ -3,7 +3,7 @@
 use super::parser::{Carry, Mention, Parser};
 use super::row::Spoken;
 use crate::chunk::{Chunk, Joint, Placed, Spot};
-use crate::lexicon::{Form, Relation, Sense};
+use crate::lexicon::{Form, Meaning, Relation, Sense};
 use crate::world::{Actor, SUBJECT};
 use recrash_model::account::{Act, LeftRight};
 
@@ -12,6 +12,9 @@ const HOW_ONE_STANDS: [&str; 12] = [
     "block", "obstruct", "encroach", "protrud", "occupy", "straddl", "jut", "extend", "stick", "reach", "imped",
     "overhang",
 ];
+
+/// A noun has so many words at most, with those that place it: "from behind the slow box truck". [tokens]
+const NOUN_WORDS: usize = 6;
 
 impl Parser<'_> {
     /// What an adjective says that somebody does: "a passing van", "a left-turning bus".
@@ -156,6 +159,9 @@ impl Parser<'_> {
         {
             return Some(last.clone());
         }
+        if let Some(mention) = self.of_participle(sense, form, placed, carry) {
+            return Some(mention);
+        }
         if carry.subject.is_none()
             && form == Form::Ing
             && !carry.be
@@ -221,6 +227,50 @@ impl Parser<'_> {
             return carry.last.clone();
         }
         carry.subject.clone()
+    }
+
+    /// Whether the noun that ends here stands behind "from behind", "from between".
+    fn comes_from(&self, end: usize) -> bool {
+        let words: Vec<&str> =
+            self.tokens[end.saturating_sub(NOUN_WORDS)..end].iter().map(|token| token.text.as_str()).collect();
+        words.windows(2).any(|pair| matches!(pair, ["from", "behind" | "between" | "under" | "underneath"]))
+    }
+
+    /// "directly towards the AV", "at the vehicle", behind a participle.
+    fn goes_to_subject(&self, at: usize) -> bool {
+        let word = |at: usize| self.tokens.get(at).map_or("", |token| token.text.as_str());
+        let adverb = usize::from(word(at).ends_with("ly") || matches!(word(at), "right" | "straight" | "back"));
+        let at = at + adverb;
+        let article = usize::from(word(at + 1) == "the");
+        let subject = |at: usize| {
+            let named = self.lexicon.longest(self.tokens, at, |meaning| matches!(meaning, Meaning::Subject));
+            named.is_some() || word(at) == crate::lexicon::COMPANY && word(at + 1) == "av"
+        };
+        matches!(word(at), "toward" | "towards") && subject(at + 1 + article)
+    }
+
+    /// Participles behind a noun that say by their own words whose they are.
+    fn of_participle(&self, sense: Sense, form: Form, placed: &Placed, carry: &Carry) -> Option<Mention> {
+        let last = carry.last.as_ref().filter(|_| form == Form::Ing && !carry.be)?;
+        // "A wheel came from behind a truck rolling over": who came from there.
+        let over = matches!(sense, Sense::Act(Act::Roll | Act::Fall | Act::Cross));
+        if let Some(subject) = carry.subject.as_ref().filter(|_| over && last.end == placed.first)
+            && self.comes_from(last.end)
+        {
+            return Some(subject.clone());
+        }
+        let other = last.actor != SUBJECT && !carry.began;
+        // "braked for a man in the road, running towards it": nobody runs towards itself.
+        let of_subject = carry.subject.as_ref().is_some_and(|subject| subject.actor == SUBJECT);
+        if other && of_subject && self.world.actors[last.actor].acts() && self.goes_to_subject(placed.end) {
+            return Some(last.clone());
+        }
+        // "the driver, seeing the van drifting over": whom the driver sees.
+        let seen = carry.frame.is_some_and(|frame| {
+            let before = &self.frames[frame];
+            (before.sense, before.form, before.object) == (Sense::See, Form::Ing, Some(last.actor))
+        });
+        (other && seen && !carry.after_comma && last.end == placed.first).then(|| last.clone())
     }
 
     /// "with traffic still waiting ahead, a van struck it": of the noun behind "with".

@@ -194,13 +194,36 @@ impl World {
         if self.apart {
             return Some(Meant::New);
         }
+        // "Bicycle was going fast", of the one bicycle: the article was left out.
+        if let Some(actor) =
+            self.only_one(sought).filter(|_| bare && noun.adjectives.is_empty() && noun.number.is_none())
+        {
+            return Some(Meant::Known(actor));
+        }
         let announced = self.latest(|known| {
             known.announced
                 && sought.fits(known)
                 && known.several == noun.several
+                && !self.is_no_car(sought, known)
                 && known.kind.is_none_or(|known| introduces(known, sought.kind))
         });
         Some(announced.map_or(Meant::New, Meant::Known))
+    }
+
+    /// "It was rear-ended. ... A bus overtook it": not the one that is announced, where the record says that it was a car.
+    fn is_no_car(&self, sought: &Sought<'_>, known: &Known) -> bool {
+        let large = matches!(sought.kind, Kind::Bus | Kind::SchoolBus | Kind::Tram);
+        large && self.with_car && known.announced && known.kind == Some(Kind::Vehicle)
+    }
+
+    /// The only one of just this kind who was met.
+    fn only_one(&self, sought: &Sought<'_>) -> Option<Actor> {
+        let own = sought.kind != Kind::Trailer;
+        let alike = |known: &Known| own && known.kind == Some(sought.kind) && known.mentions > 0 && sought.fits(known);
+        let mut all = (1..self.actors.len()).filter(|&actor| alike(&self.actors[actor]));
+        let (only, more) = (all.next()?, all.next());
+        let known = &self.actors[only];
+        (more.is_none() && !known.several && !known.announced && sought.hint.is_none()).then_some(only)
     }
 
     /// "Parked cars": a group, the one that was named or a new one.
@@ -292,7 +315,9 @@ impl World {
         let Sought { noun, kind, hint } = *sought;
         // Who drives is not "the parked car".
         let parked = sought.has(Adjective::Parked) && !noun.several;
-        let fits = |known: &Known| sought.fits(known) && !(parked && known.acted && !known.parked);
+        let fits = |known: &Known| {
+            sought.fits(known) && !(parked && known.acted && !known.parked) && !self.is_no_car(sought, known)
+        };
         let as_many = |known: &Known| known.several == noun.several && fits(known);
         let called = |known: &Known| known.names.iter().any(|name| noun.names.contains(name));
         // "the scooter rider" of "two people riding scooters".

@@ -116,6 +116,8 @@ pub struct World {
     pub touches: bool,
     /// So many others are told to stand between the noun that is looked up and the subject vehicle.
     pub apart: bool,
+    /// The record says that it crashed with a car.
+    with_car: bool,
     /// Number of the sentence that is read.
     pub sentence: usize,
     /// Who the sentence, or the one before, is about.
@@ -137,6 +139,7 @@ impl World {
             plain: false,
             touches: false,
             apart: false,
+            with_car: own.partner == Some("car"),
             sentence: 0,
             topic: SUBJECT,
         }

@@ -143,3 +143,59 @@ fn who_runs_a_red_light_enters_no_traffic() {
         assert_eq!(facts["cp_movement"], "straight", "{text}");
     }
 }
+
+#[test]
+fn who_rides_up_and_strikes_it_is_the_partner_though_the_column_has_a_car() {
+    let text = "The AV was traveling east when it yielded to a parking vehicle ahead on the right. Shortly after, a lane-splitting electric \
+                scooterist attempting to change lanes made contact with the left rear corner of the AV.";
+    let facts = beside(text, |record| record.partner = Coded::Known(PartnerKind::PassengerCar));
+    assert_eq!((facts["cp_kind"].as_str(), facts["others"].as_str()), ("scooter_rider", "vehicle"));
+}
+
+#[test]
+fn columns_of_a_second_contact_are_not_of_the_first() {
+    let text = "The AV was traveling south when a dog crossed the street. The front of the AV made contact with the dog, and the AV came to a \
+                stop. The front of an SUV behind the AV then made contact with the rear of the AV.";
+    let facts = beside(text, |record| {
+        record.partner = Coded::Known(PartnerKind::Suv);
+        (record.cp_zones, record.sv_zones) = (vec![Z::Front], vec![Z::Rear]);
+        (record.cp_movement, record.sv_speed_mps) = (Coded::Known(Movement::Straight), Some(0.0));
+    });
+    let said = ["cp_kind", "cp_zones", "sv_zones", "sv_speed"].map(|name| facts[name].as_str());
+    assert_eq!(said, ["animal", "", "front", ""]);
+}
+
+#[test]
+fn damage_on_one_side_leaves_out_the_corners_of_the_other() {
+    let text = |damage: &str| format!("The AV made contact with a van parked ahead of it, damaging the AV's {damage}.");
+    let ticked = |damage: &str| {
+        let zones = vec![Z::FrontLeft, Z::Front, Z::FrontRight];
+        beside(&text(damage), |record| record.sv_zones.clone_from(&zones)).remove("sv_zones").unwrap_or_default()
+    };
+    assert_eq!(ticked("front bumper, left headlamp, and left front radar"), "front_left front");
+    assert_eq!(ticked("left headlamp and right headlamp"), "front_left front front_right");
+}
+
+#[test]
+fn a_company_that_drives_is_its_vehicle() {
+    let text = "Northlight was proceeding straight in the right lane when a van swerved into the right lane and came to a stop. The front of \
+                the AV made contact with the van.";
+    let facts = beside(text, |_| {});
+    assert_eq!((facts["sv_lane"].as_str(), facts["sv_acts"].as_str()), ("right", "follow"));
+    assert!(!facts["cp_acts"].contains("follow"), "{}", facts["cp_acts"]);
+}
+
+#[test]
+fn a_bus_that_overtakes_is_not_the_car_that_the_column_names() {
+    let text = "The AV was traveling north when it was rear-ended. A bus in the right adjacent lane overtook the AV on the right, and the AV \
+                braked. A passenger vehicle behind the AV made contact with its rear bumper.";
+    let facts = beside(text, |record| record.partner = Coded::Known(PartnerKind::PassengerCar));
+    assert_eq!((facts["cp_kind"].as_str(), facts["others"].as_str()), ("passenger_car", "bus"));
+}
+
+#[test]
+fn a_lane_change_away_from_the_touched_corner_was_followed() {
+    let text = "The AV was making a right lane change when a sedan going straight made contact with the left rear bumper of the AV.";
+    let facts = beside(text, |record| record.cp_movement = Coded::Known(Movement::Straight));
+    assert_eq!(facts["came_from"], "behind");
+}

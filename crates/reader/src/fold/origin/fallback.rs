@@ -4,7 +4,7 @@ use super::{Clues, forward};
 use crate::fold::Reading;
 use crate::fold::party::has_zone;
 use crate::lexicon::Relation;
-use recrash_model::account::{Account, Act, ContactState, Fact, KindGroup, LeftRight, Origin, Party, told};
+use recrash_model::account::{Account, Act, ActFact, ContactState, Fact, KindGroup, LeftRight, Origin, Party, told};
 use recrash_model::template::{Movement, RoadType};
 use recrash_model::zones::ContactZone as Z;
 
@@ -20,6 +20,12 @@ pub(super) fn by_side(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origi
         clues.reading.story.tokens[frame.first].text.starts_with("sideswip")
     });
     let beside = moved_over || parked || swiped || clues.any(Relation::Beside);
+    if let Some(origin) = turns_in_before(clues, account) {
+        return Some(Fact::by_rule(
+            origin,
+            "who turns into the way of one that stands comes from the road that crosses",
+        ));
+    }
     if let (true, Some(side)) = (beside, zone_side(account)) {
         return Some(Fact::by_rule(Origin::Beside { side }, "the side that was touched"));
     }
@@ -43,6 +49,21 @@ pub(super) fn by_side(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origi
     let driven_over = has_zone(&account.sv, |zone| zone == Z::Bottom) && forward(account);
     (animal && (driven_over || has_zone(&account.sv, |zone| zone.is_front())))
         .then(|| Fact::by_rule(Origin::Ahead, "an animal that the front touches is ahead"))
+}
+
+/// "It was waiting to leave the park when a van, turning right into the entrance, swung wide and struck it": from the road before it, to the
+/// left of who waits for one that turns right.
+fn turns_in_before(clues: &Clues<'_>, account: &Account) -> Option<Origin> {
+    let partner = account.partner.as_ref()?;
+    let turn = |party: &Party| {
+        let turns = |fact: &&ActFact| fact.act == Act::Turn && !fact.after_contact;
+        party.acts.iter().find(turns).and_then(|fact| fact.side)
+    };
+    let side = turn(partner)?;
+    let stands = told(&account.sv.state).is_some_and(ContactState::stands);
+    let elsewhere = partner.lane.is_some() || clues.any(Relation::Beside) || partner.did(Act::Pass);
+    let rear = has_zone(&account.sv, |zone| zone.is_rear());
+    (stands && !elsewhere && !rear && !account.sv.did(Act::Turn)).then_some(Origin::Cross { side: side.other() })
 }
 
 /// Where the words say nothing: by zones and movement columns, which tell front on rear and little else.
@@ -91,7 +112,10 @@ pub(super) fn by_columns(reading: &Reading<'_>, account: &Account) -> Option<Fac
     // It moved over before one in the next lane: corner on corner.
     let corner = !account.sv.zones.is_empty() && account.sv.zones.iter().all(|zone| zone.value != Z::Rear);
     if let (true, true, Some(side)) = (account.sv.did(Act::LaneChange), corner && sv_rear, zone_side(account)) {
-        return rule(Origin::Beside { side });
+        // It went away from that side: whoever met it there had followed it.
+        let change = account.sv.acts.iter().find(|fact| fact.act == Act::LaneChange && !fact.after_contact);
+        let away = change.is_some_and(|fact| fact.side == Some(side.other())) && cp == Some(Movement::Straight);
+        return rule(if away { Origin::Behind } else { Origin::Beside { side } });
     }
     if sv_rear && cp_front && !sv_front {
         return rule(Origin::Behind);
@@ -142,6 +166,13 @@ pub(super) fn by_columns(reading: &Reading<'_>, account: &Account) -> Option<Fac
         // Its right flank is met by who comes to it from its right: it came from the left.
         let right = has_zone(partner, |zone| zone == Z::Right);
         return rule(Origin::Cross { side: if right { LeftRight::Left } else { LeftRight::Right } });
+    }
+    // Both went straight into a junction, corner on corner.
+    let corner = |party: &Party| !party.zones.is_empty() && party.zones.iter().all(|zone| zone.value.is_front());
+    let both = (sv, cp) == (Some(Movement::Straight), Some(Movement::Straight));
+    let lanes = account.sv.lane.is_some() || partner.lane.is_some();
+    if junction && both && corner(&account.sv) && corner(partner) && !lanes {
+        return rule(Origin::Cross { side });
     }
     let straight = |movement| matches!(movement, Some(Movement::Straight | Movement::Stopped | Movement::Parked));
     (straight(cp) && straight(sv))

@@ -32,7 +32,10 @@ impl Clues<'_> {
         let early = known.relations.iter().any(|(_, sentence)| *sentence <= contact);
         let back = &self.reading.back;
         let told = move |sentence: usize| {
-            sentence <= contact || back.contains(&sentence) || !early && self.reading.had_before(sentence)
+            sentence <= contact
+                || back.contains(&sentence)
+                || self.reading.looks_back_from_crash(sentence)
+                || !early && self.reading.had_before(sentence)
         };
         known.relations.iter().filter(move |(_, sentence)| told(*sentence)).map(|(relation, _)| *relation)
     }
@@ -68,7 +71,19 @@ impl Clues<'_> {
     }
 
     pub(super) fn has(&self, relation: Relation) -> Source {
-        self.source(|frame| frame.relations.iter().any(|(known, _)| *known == relation))
+        let reading = self.reading;
+        let told = |frame: &Frame| frame.relations.iter().any(|(known, _)| *known == relation);
+        // Of a noun alone: "a van in the next lane". The sentence that names it.
+        let of_noun = || {
+            let known = &reading.story.world.actors[self.actor];
+            let (_, sentence) = known.relations.iter().find(|(known, _)| *known == relation)?;
+            Some(reading.story.sentences[*sentence])
+        };
+        let by_frame = reading.story.frames.iter().any(|frame| frame.who == Some(self.actor) && told(frame));
+        match of_noun().filter(|_| !by_frame) {
+            Some(sentence) => reading.words(sentence.first, sentence.end),
+            None => self.source(told),
+        }
     }
 }
 

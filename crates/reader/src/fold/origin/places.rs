@@ -1,11 +1,13 @@
 //! What the words say of the place that somebody comes from: a kerb, a stall, a side street, a side of the road.
 
+use super::relation_to;
 use crate::fold::Reading;
 use crate::fold::types::turning;
 use crate::frame::Frame;
 use crate::lexicon::{Relation, Sense};
 use crate::world::{Actor, SUBJECT};
-use recrash_model::account::{Account, Act, Compass, LeftRight, Source};
+use recrash_model::account::{Account, Act, ActFact, Compass, LeftRight, PlaceKind, Source};
+use recrash_model::template::RoadType;
 
 /// The side of the road from which somebody comes, where its words name it: "from the north side of the street", "between cars on the
 /// right side of the road".
@@ -164,4 +166,119 @@ pub(super) fn stood_in(reading: &Reading<'_>, actor: Actor, names: &[&str]) -> O
         (frame.sense == Sense::Parked || frame.act() == Some(Act::Hold) || frame.sense == Sense::Face)
             .then(|| reading.words(frame.first, at + 1))
     })
+}
+
+/// "approaching from behind in the left adjacent lane", of one that goes over to the left: beside it, and behind at first.
+pub(super) fn behind_in_next_lane(
+    reading: &Reading<'_>,
+    actor: Actor,
+    account: &Account,
+    side: LeftRight,
+) -> Option<Source> {
+    let goes = |fact: &ActFact| {
+        let over = matches!(fact.act, Act::LaneChange | Act::Swerve | Act::Drift);
+        over && !fact.after_contact && fact.side == Some(side)
+    };
+    let both = |frame: &Frame| {
+        let has = |wanted: Relation| frame.relations.iter().any(|(relation, _)| *relation == wanted);
+        has(Relation::Behind) && has(relation_to(side))
+    };
+    let (number, _) = reading.before(actor).find(|(_, frame)| both(frame))?;
+    let (first, end) = reading.window(number);
+    account.sv.acts.iter().any(goes).then(|| reading.words(first, end))
+}
+
+/// "drove along Elm Street when a van, turning left onto Elm Street, struck its rear": to which side it turned, and the words.
+pub(super) fn turn_onto_its_street(reading: &Reading<'_>, actor: Actor) -> Option<(LeftRight, Source)> {
+    let turns = |frame: &Frame| match frame.sense {
+        Sense::Sided(Act::Turn, side) => Some(side),
+        Sense::Act(Act::Turn) => frame.side,
+        _ => None,
+    };
+    let (number, side) = reading.before(actor).find_map(|(number, frame)| Some((number, turns(frame)?)))?;
+    let street = street_behind(reading, number, &["onto"])?;
+    let along = ["on", "along", "down", "up"];
+    let own = |number: usize| street_behind(reading, number, &along) == Some(street);
+    let drives = |frame: &Frame| frame.act() == Some(Act::Follow);
+    let same = reading.before(SUBJECT).any(|(number, frame)| drives(frame) && own(number));
+    let (first, end) = reading.window(number);
+    same.then(|| (side, reading.words(first, end)))
+}
+
+/// "It drove on Elm Street when a van traveling on Oak Street struck it", at a junction: the words for the other street.
+pub(super) fn drives_on_another(reading: &Reading<'_>, actor: Actor) -> Option<Source> {
+    let drives = |frame: &Frame| frame.act() == Some(Act::Follow) && frame.happened() && !frame.aside;
+    let named = |actor: Actor| {
+        let told = reading.before(actor).filter(|(_, frame)| drives(frame));
+        told.filter_map(|(number, _)| Some((number, street_behind(reading, number, &["on", "along", "down", "up"])?)))
+            .next()
+    };
+    let ((_, own), (number, other)) = (named(SUBJECT)?, named(actor)?);
+    let features = &story_words(reading);
+    let junction = features.contains(&"intersection") || reading.record.road.known() == Some(RoadType::Intersection);
+    let (first, end) = reading.window(number);
+    (own != other && junction).then(|| reading.words(first, end))
+}
+
+/// The words of the story up to the contact.
+fn story_words<'a>(reading: &'a Reading<'_>) -> Vec<&'a str> {
+    let end = reading.until().min(reading.story.tokens.len());
+    reading.story.tokens[..end].iter().map(|token| token.text.as_str()).collect()
+}
+
+/// "on Monday", "on March 3".
+fn is_date(word: &str) -> bool {
+    const DATES: [&str; 19] = [
+        "monday",
+        "tuesday",
+        "wednesday",
+        "thursday",
+        "friday",
+        "saturday",
+        "sunday",
+        "january",
+        "february",
+        "march",
+        "april",
+        "may",
+        "june",
+        "july",
+        "august",
+        "september",
+        "october",
+        "november",
+        "december",
+    ];
+    DATES.contains(&word)
+}
+
+/// The name of a street behind one of these words, in the words of a frame.
+fn street_behind<'a>(reading: &'a Reading<'_>, number: usize, words: &[&str]) -> Option<&'a str> {
+    let (first, end) = reading.window(number);
+    let tokens = &reading.story.tokens[first..end];
+    let at = tokens.iter().position(|token| words.contains(&token.text.as_str()))?;
+    let bound = usize::from(tokens.get(at + 1).is_some_and(|next| next.text.ends_with("bound")));
+    let name = tokens.get(at + 1 + bound).filter(|name| name.capital)?.text.as_str();
+    (!is_date(name) && !name.contains("xxx") && !name.contains("redacted")).then_some(name)
+}
+
+/// "reversed out of an angled space", "out of a space in a parking lot": it stood across the way.
+pub(super) fn is_across(reading: &Reading<'_>, number: usize, account: &Account) -> bool {
+    let (first, end) = reading.window(number);
+    let has =
+        |wanted: &[&str]| reading.story.tokens[first..end].iter().any(|token| wanted.contains(&token.text.as_str()));
+    let kind = account.place.kind.as_ref().map(|kind| kind.value);
+    let lot = matches!(kind, Some(PlaceKind::ParkingLot | PlaceKind::Garage));
+    !has(&["parallel"]) && (lot || has(&["angled", "perpendicular", "diagonal", "diagonally"]))
+}
+
+/// The one side that stands in the words of a frame: "from between cars in the leftmost lane".
+pub(super) fn side_named(reading: &Reading<'_>, number: usize) -> Option<LeftRight> {
+    let (first, end) = reading.window(number);
+    let has = |stem: &str| reading.story.tokens[first..end].iter().any(|token| token.text.starts_with(stem));
+    match (has("left"), has("right")) {
+        (true, false) => Some(LeftRight::Left),
+        (false, true) => Some(LeftRight::Right),
+        _ => None,
+    }
 }

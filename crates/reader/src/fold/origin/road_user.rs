@@ -5,8 +5,9 @@
 
 use super::fallback::{square_front, zone_side};
 use super::places::{
-    after_its_turn, at_curb, climbs, faces_only, goes_over_to_pass, in_stall, lead_of_subject, on_side_street,
-    passes_subject, side_of_road, stood_in,
+    after_its_turn, at_curb, behind_in_next_lane, climbs, drives_on_another, faces_only, goes_over_to_pass, in_stall,
+    is_across, lead_of_subject, on_side_street, passes_subject, side_named, side_of_road, stood_in,
+    turn_onto_its_street,
 };
 use super::{Clues, changed_from, first_relation, lane_side, relation_to};
 use crate::chunk::Spot;
@@ -17,8 +18,8 @@ use crate::frame::Frame;
 use crate::lexicon::{Relation, Sense};
 use crate::world::{Actor, SUBJECT};
 use recrash_model::account::{
-    Account, Act, ActFact, Compass, ContactState, Fact, KindGroup, LaneWord, LeftRight, Origin, Party, PlaceKind,
-    RoadFeature, Source, told,
+    Account, Act, ActFact, Compass, ContactState, Fact, KindGroup, LaneWord, LeftRight, Origin, Party, RoadFeature,
+    Source, told,
 };
 use recrash_model::zones::ContactZone as Z;
 
@@ -48,7 +49,7 @@ struct Case<'a> {
 type Told = Option<Fact<Origin>>;
 type Rule = fn(&Case<'_>) -> Told;
 
-const RULES: [Rule; 36] = [
+const RULES: [Rule; 39] = [
     |case| case.thrown_at_the_rear(),
     |case| case.out_of_a_place(),
     |case| case.stood_in_a_stall(),
@@ -62,10 +63,13 @@ const RULES: [Rule; 36] = [
     |case| case.leaves_the_kerb(),
     |case| case.goes_over_from_the_kerb(),
     |case| case.moves_over_from_behind(),
+    |case| case.behind_in_the_lane_it_goes_to(),
     |case| case.comes_from_behind(),
     |case| case.is_beside(),
+    |case| case.turns_onto_its_street(),
     |case| case.gives_no_way(),
     |case| case.by_directions(),
+    |case| case.on_another_street(),
     |case| case.up_and_down_a_hill(),
     |case| case.goes_the_wrong_way(),
     |case| case.comes_the_other_way(),
@@ -268,7 +272,7 @@ impl<'a> Case<'a> {
                 return Origin::Behind;
             }
             // Out of a spot at the kerb, backwards: it was ahead of who is touched in front.
-            if square_front(self.account) && (curb || self.ahead && !self.is_across(number)) {
+            if square_front(self.account) && (curb || self.ahead && !is_across(self.reading, number, self.account)) {
                 return Origin::Ahead;
             }
             // Both go backwards, and meet at their rears.
@@ -280,21 +284,6 @@ impl<'a> Case<'a> {
             return Origin::Behind;
         }
         if curb { Origin::Parked { side } } else { Origin::Stall { side } }
-    }
-
-    /// "reversed out of an angled space", "out of a space in a parking lot": it stood across the way.
-    fn is_across(&self, number: usize) -> bool {
-        let (first, end) = self.reading.window(number);
-        let has = |wanted: &[&str]| {
-            self.reading.story.tokens[first..end].iter().any(|token| wanted.contains(&token.text.as_str()))
-        };
-        let lot = self
-            .account
-            .place
-            .kind
-            .as_ref()
-            .is_some_and(|kind| matches!(kind.value, PlaceKind::ParkingLot | PlaceKind::Garage));
-        !has(&["parallel"]) && (lot || has(&["angled", "perpendicular", "diagonal", "diagonally"]))
     }
 
     /// "was parked in a stall and turned out".
@@ -449,7 +438,7 @@ impl<'a> Case<'a> {
         // "A dog came out from between parked cars on the left".
         let group = told(&self.partner.kind).map(|kind| kind.group());
         if group == Some(KindGroup::Animal) {
-            let side = self.side_or_touched().or_else(|| self.side_named(number))?;
+            let side = self.side_or_touched().or_else(|| side_named(self.reading, number))?;
             return told_as(Origin::Cross { side }, self.words_of(Act::PullOut));
         }
         told_as(Origin::Parked { side: self.side_or_touched() }, self.words_of(Act::PullOut))
@@ -478,20 +467,16 @@ impl<'a> Case<'a> {
         told_as(Origin::Parked { side: self.side_or_touched() }, self.words_of(frame.act()?))
     }
 
-    /// The one side that stands in the words of a frame: "from between cars in the leftmost lane".
-    fn side_named(&self, number: usize) -> Option<LeftRight> {
-        let (first, end) = self.reading.window(number);
-        let has = |stem: &str| self.reading.story.tokens[first..end].iter().any(|token| token.text.starts_with(stem));
-        match (has("left"), has("right")) {
-            (true, false) => Some(LeftRight::Left),
-            (false, true) => Some(LeftRight::Right),
-            _ => None,
-        }
-    }
-
     fn moves_over_from_behind(&self) -> Told {
         let side = lane_side(self.account)?;
         if self.behind && self.moved_over() { by_rule(Origin::Beside { side }, "lanes of both") } else { None }
+    }
+
+    /// Behind it, in the lane that it goes to.
+    fn behind_in_the_lane_it_goes_to(&self) -> Told {
+        let side = self.side.filter(|_| self.behind_first() && !(self.did(Act::Pass) || self.moved_over()))?;
+        let source = behind_in_next_lane(self.reading, self.actor, self.account, side)?;
+        told_as(Origin::Beside { side }, source)
     }
 
     fn comes_from_behind(&self) -> Told {
@@ -520,6 +505,14 @@ impl<'a> Case<'a> {
         }
         let side = lane_side(self.account).or(self.touched)?;
         told_as(Origin::Beside { side }, self.clues.has(Relation::Beside))
+    }
+
+    /// Out of the street that crosses, into its way.
+    fn turns_onto_its_street(&self) -> Told {
+        let elsewhere = self.turn.is_some() || self.side.is_some() || turning(&self.account.sv);
+        let from_behind = has_zone(&self.account.sv, Z::is_rear) && !has_zone(&self.account.sv, Z::is_front);
+        let (side, source) = turn_onto_its_street(self.reading, self.actor).filter(|_| from_behind && !elsewhere)?;
+        told_as(Origin::Cross { side }, source)
     }
 
     /// "entered the circle without giving way".
@@ -594,6 +587,16 @@ impl<'a> Case<'a> {
             return by_rule(Origin::Behind, "directions of both");
         }
         None
+    }
+
+    /// "The AV drove on Elm Street, the van on Oak Street", neither of whom turned.
+    fn on_another_street(&self) -> Told {
+        let turns = self.did(Act::Turn) || self.did(Act::UTurn) || turning(&self.account.sv);
+        if self.turn.is_some() || turns || self.ahead || self.behind || self.did(Act::Pass) || self.moved_over() {
+            return None;
+        }
+        let (side, source) = (self.side_or_touched()?, drives_on_another(self.reading, self.actor)?);
+        told_as(Origin::Cross { side }, source)
     }
 
     fn up_and_down_a_hill(&self) -> Told {

@@ -1,0 +1,286 @@
+//! Phrases that say what other words of the lexicon say, put in those before anything is read: "while at a complete stop" stood, "changed from
+//! the right lane" changed lanes, "Acme was driving" is its vehicle. The places of the tokens stay.
+
+use crate::lexicon::{Lexicon, Meaning};
+use crate::token::{Token, TokenKind};
+
+/// Rewords the tokens of a narrative.
+pub(super) fn apply(tokens: &mut Vec<Token>) {
+    name_system(tokens);
+    hold_by_hand(tokens);
+    name_passenger_cars(tokens);
+    name_loose_boards(tokens);
+    change_lanes(tokens);
+    name_aliases(tokens);
+    stand_still(tokens);
+    turn_meanwhile(tokens);
+    drive_as_company(tokens);
+    part_owners(tokens);
+}
+
+/// "The system issued a brake command", "the ADS braked": the vehicle that it drives.
+fn name_system(tokens: &mut [Token]) {
+    const DOES: [&str; 16] = [
+        "issued",
+        "applied",
+        "commanded",
+        "initiated",
+        "braked",
+        "slowed",
+        "decelerated",
+        "steered",
+        "swerved",
+        "executed",
+        "performed",
+        "nudged",
+        "stopped",
+        "began",
+        "started",
+        "requested",
+    ];
+    for at in 1..tokens.len().saturating_sub(2) {
+        let named = matches!(tokens[at].text.as_str(), "system" | "ads") && tokens[at - 1].text == "the";
+        let adverb = usize::from(tokens[at + 1].text.ends_with("ly"));
+        if named && DOES.contains(&tokens[at + 1 + adverb].text.as_str()) {
+            "av".clone_into(&mut tokens[at].text);
+        }
+    }
+}
+
+/// "a hand held stop sign", "holding up a stop sign": a paddle, and no sign that stands there.
+fn hold_by_hand(tokens: &mut [Token]) {
+    for at in 1..tokens.len().saturating_sub(1) {
+        if tokens[at].text != "stop" || tokens[at + 1].text != "sign" {
+            continue;
+        }
+        let held = tokens[at.saturating_sub(4)..at].iter().any(|token| {
+            matches!(
+                token.text.as_str(),
+                "held" | "handheld" | "holding" | "holds" | "waving" | "carrying" | "wielding"
+            )
+        });
+        let paddle = tokens.get(at + 2).is_some_and(|next| next.text == "paddle");
+        if held || paddle {
+            for (token, name) in tokens[at..].iter_mut().zip(["signal", "paddle"]) {
+                name.clone_into(&mut token.text);
+            }
+        }
+    }
+}
+
+/// "An unattended skateboard", "a skateboard that got away from its rider": nobody stands on it, also where it is named without that word.
+fn name_loose_boards(tokens: &mut [Token]) {
+    let alone =
+        |word: &str| matches!(word, "unattended" | "riderless" | "unoccupied" | "runaway" | "abandoned" | "loose");
+    let mut loose = tokens.windows(2).any(|pair| alone(&pair[0].text) && pair[1].text == "skateboard");
+    for at in 0..tokens.len().saturating_sub(4) {
+        let word = |ahead: usize| tokens.get(at + ahead).map_or("", |token| token.text.as_str());
+        let had = usize::from(matches!(word(2), "had" | "has" | "suddenly"));
+        let lost = match word(2 + had) {
+            "escaped" => true,
+            "got" | "gotten" | "slipped" | "slid" | "flew" | "shot" => matches!(word(3 + had), "away" | "out" | "from"),
+            "broke" | "came" => matches!(word(3 + had), "free" | "loose"),
+            _ => false,
+        };
+        if word(0) == "skateboard" && matches!(word(1), "that" | "which") && lost {
+            "rolled".clone_into(&mut tokens[at + 2 + had].text);
+            loose = true;
+        }
+    }
+    for token in tokens.iter_mut().filter(|token| loose && token.text == "skateboard") {
+        "object".clone_into(&mut token.text);
+    }
+}
+
+/// "changed from the right lane to the left one", "transitioned from the next lane": a change of lanes, and what it leaves is told behind it.
+fn change_lanes(tokens: &mut [Token]) {
+    for at in 0..tokens.len().saturating_sub(3) {
+        let changes = match tokens[at].text.as_str() {
+            "changed" | "transitioned" | "switched" | "shifted" => "lanechanged",
+            "changing" | "transitioning" | "switching" | "shifting" => "lanechanging",
+            "changes" | "transitions" | "switches" | "shifts" => "lanechanges",
+            _ => continue,
+        };
+        let lane = |token: &Token| matches!(token.text.as_str(), "lane" | "lanes");
+        let named = tokens[at + 2..].iter().take(LANE_WORDS).take_while(|token| token.text != ".").any(lane);
+        if tokens[at + 1].text == "from" && named {
+            changes.clone_into(&mut tokens[at].text);
+        }
+    }
+}
+
+/// "A semi-trailer truck (the Actor) came. ... The Actor turned": a name of its own, which the story goes on with.
+fn name_aliases(tokens: &mut [Token]) {
+    let lexicon = Lexicon::get();
+    for at in 1..tokens.len().saturating_sub(2) {
+        if tokens[at].text != "(" {
+            continue;
+        }
+        let alias = at + 1 + usize::from(tokens[at + 1].text == "the");
+        let closed = tokens.get(alias + 1).is_some_and(|next| next.text == ")");
+        let named = closed && tokens[alias].capital && lexicon.longest(tokens, alias, |_| true).is_none();
+        let known = lexicon.longest(tokens, at - 1, |meaning| matches!(meaning, Meaning::Kind(_))).is_some();
+        if !(named && known) {
+            continue;
+        }
+        let (alias, head) = (tokens[alias].text.clone(), tokens[at - 1].text.clone());
+        for again in at + 4..tokens.len() {
+            if tokens[again].text == alias && tokens[again - 1].text == "the" {
+                head.clone_into(&mut tokens[again].text);
+            }
+        }
+    }
+}
+
+/// So many words a lane that is left may have: "the lane immediately to the left". [tokens]
+const LANE_WORDS: usize = 6;
+
+/// "while at a complete stop at a light", "while at a standstill": told without a verb, it stood.
+fn stand_still(tokens: &mut [Token]) {
+    for at in 1..tokens.len().saturating_sub(3) {
+        let begins = matches!(tokens[at - 1].text.as_str(), "while" | "when") && tokens[at].text == "at";
+        let word = |ahead: usize| tokens.get(at + ahead).map_or("", |token| token.text.as_str());
+        let words = match (word(1), word(2), word(3)) {
+            ("a", "complete" | "full" | "dead", "stop" | "standstill") => 4,
+            ("a", "stop" | "standstill", _) if word(3) != "sign" && word(3) != "light" => 3,
+            _ => 0,
+        };
+        if begins && words > 0 {
+            "stopped".clone_into(&mut tokens[at].text);
+            for token in &mut tokens[at + 1..at + words] {
+                "completely".clone_into(&mut token.text);
+            }
+        }
+    }
+}
+
+/// "slowed during an unprotected left turn", "was midway through a right turn": told by a noun, it was turning.
+fn turn_meanwhile(tokens: &mut [Token]) {
+    const WORDS: usize = 5;
+    for at in 0..tokens.len().saturating_sub(3) {
+        let word = |ahead: usize| tokens.get(at + ahead).map_or("", |token| token.text.as_str());
+        let (lead, is_clause) = match (word(0), word(1), word(2), word(3)) {
+            ("during", ..) => (1, true),
+            ("midway" | "halfway", "through" | "into", ..) => (2, false),
+            ("in", "the", "middle" | "midst", "of") => (4, false),
+            _ => continue,
+        };
+        let from = at + lead;
+        if !tokens.get(from).is_some_and(|token| matches!(token.text.as_str(), "a" | "an" | "the" | "its")) {
+            continue;
+        }
+        let Some(end) = (from + 1..tokens.len().min(from + WORDS)).find(|&turn| tokens[turn].text == "turn") else {
+            continue;
+        };
+        let between: Vec<&str> = tokens[from + 1..end].iter().map(|token| token.text.as_str()).collect();
+        let known =
+            |word: &&str| matches!(*word, "left" | "right" | "hand" | "unprotected" | "protected" | "slow" | "wide");
+        // "the turn lane", "a turn signal".
+        let of_turn = tokens
+            .get(end + 1)
+            .is_some_and(|next| matches!(next.text.as_str(), "lane" | "lanes" | "signal" | "signals" | "pocket"));
+        if !between.iter().all(known) || of_turn {
+            continue;
+        }
+        let side = between.iter().copied().find(|word| matches!(*word, "left" | "right")).map(str::to_owned);
+        if is_clause {
+            "while".clone_into(&mut tokens[at].text);
+        } else {
+            tokens[at..from].iter_mut().for_each(|token| "completely".clone_into(&mut token.text));
+        }
+        tokens[from..=end].iter_mut().for_each(|token| "completely".clone_into(&mut token.text));
+        "turning".clone_into(&mut tokens[from].text);
+        if let Some(side) = side {
+            tokens[from + 1].text = side;
+        }
+    }
+}
+
+/// "Acme was proceeding straight", in a report of that company: its vehicle was.
+fn drive_as_company(tokens: &mut [Token]) {
+    let drives = |word: &str| {
+        matches!(
+            word,
+            "proceeding"
+                | "traveling"
+                | "travelling"
+                | "driving"
+                | "stopped"
+                | "turning"
+                | "merging"
+                | "yielding"
+                | "slowing"
+                | "heading"
+                | "moving"
+                | "waiting"
+        )
+    };
+    for at in 0..tokens.len().saturating_sub(2) {
+        let company = Lexicon::get().longest(tokens, at, |meaning| matches!(meaning, Meaning::Company));
+        if company.is_some_and(|found| found.length == 1)
+            && tokens[at + 1].text == "was"
+            && drives(&tokens[at + 2].text)
+            && at
+                .checked_sub(1)
+                .is_none_or(|before| matches!(tokens[before].text.as_str(), "." | "," | "when" | "while" | "as"))
+        {
+            "av".clone_into(&mut tokens[at].text);
+        }
+    }
+}
+
+/// "The side of the trucks trailer", told of a truck: its apostrophe was lost.
+fn part_owners(tokens: &mut Vec<Token>) {
+    const OWNERS: [(&str, &str); 6] = [
+        ("trucks", "truck"),
+        ("tractors", "tractor"),
+        ("pickups", "pickup"),
+        ("vans", "van"),
+        ("suvs", "suv"),
+        ("cars", "car"),
+    ];
+    const OWNED: [&str; 3] = ["trailer", "cab", "bed"];
+    for at in (1..tokens.len().saturating_sub(1)).rev() {
+        let Some((_, one)) = OWNERS.iter().find(|(several, _)| tokens[at].text == *several) else { continue };
+        let before = &tokens[at.saturating_sub(OWNER_WORDS)..at];
+        let the = before.iter().rposition(|token| token.text == "the");
+        let many = |token: &Token| crate::token::number(&token.text).is_some() || token.text == "both";
+        let alone =
+            the.is_some_and(|the| !before[the..].iter().any(many)) && !before.iter().any(|token| token.text == "both");
+        let known = tokens[..at].iter().any(|token| token.text == *one);
+        if !(OWNED.contains(&tokens[at + 1].text.as_str()) && alone && known) {
+            continue;
+        }
+        let (start, end) = (tokens[at].end - 1, tokens[at].end);
+        (*one).clone_into(&mut tokens[at].text);
+        tokens[at].end = start;
+        let genitive = Token { start, end, text: "'s".to_owned(), kind: TokenKind::Word, capital: false };
+        tokens.insert(at + 1, genitive);
+    }
+}
+
+/// So many words before an owner may belong to its name: "the large red". [tokens]
+const OWNER_WORDS: usize = 4;
+
+/// "The passenger continued to reverse", told of a passenger car: its second word is left out.
+fn name_passenger_cars(tokens: &mut [Token]) {
+    let pair = |pair: &[Token], one: &str, other: &str| pair[0].text == one && pair[1].text == other;
+    if !tokens.windows(2).any(|run| pair(run, "passenger", "car") || pair(run, "passenger", "vehicle")) {
+        return;
+    }
+    for at in 1..tokens.len().saturating_sub(3) {
+        let word = |ahead: usize| tokens[at + ahead].text.as_str();
+        let to =
+            |ahead: usize| word(ahead) == "to" && matches!(word(ahead + 1), "reverse" | "back" | "proceed" | "drive");
+        let drives = match word(1) {
+            "reversed" | "accelerated" | "reversing" => true,
+            "proceeded" => matches!(word(2), "forward" | "straight" | "ahead"),
+            "continued" => matches!(word(2), "forward" | "straight" | "reversing") || to(2),
+            "began" | "started" => word(2) == "reversing" || to(2),
+            _ => false,
+        };
+        if tokens[at - 1].text == "the" && word(0) == "passenger" && drives {
+            "car".clone_into(&mut tokens[at].text);
+        }
+    }
+}
