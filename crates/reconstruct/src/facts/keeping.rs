@@ -27,6 +27,13 @@ const NEARS_S: f64 = 2.0;
 /// Between lanes somebody who leaves its own is at more than this to them. [rad]
 const CHANGES_RAD: f64 = 0.04;
 
+/// Who is narrower rides beside the driving lanes too. [m]
+pub(super) const NARROW_M: f64 = 1.2;
+
+pub(super) const fn is_for_narrow(kind: StripKind) -> bool {
+    matches!(kind, StripKind::Bike | StripKind::Shoulder)
+}
+
 /// A lane leads no farther from somebody's way. [rad]
 const ALONG_RAD: f64 = 0.8;
 
@@ -70,7 +77,7 @@ pub(super) fn off_lane_s(told: &Told, scenario: &Scenario, track: &ActorTrack, c
 fn is_off(told: &Told, scenario: &Scenario, track: &ActorTrack, state: &ActorState, leaves: bool) -> bool {
     let network = scenario.network();
     let strip = told.cp.lane.and_then(strip_of);
-    let narrow = track.width_m < 1.2;
+    let narrow = track.width_m < NARROW_M;
     let mut off = true;
     for lane in &network.lanes {
         let (s_m, t_m) = lane.local(state.position());
@@ -81,9 +88,7 @@ fn is_off(told: &Told, scenario: &Scenario, track: &ActorTrack, state: &ActorSta
         let most_m = KEEPS_M.max(0.5 * (lane.width_at(s_m) - track.width_m));
         let may = match network.road(lane.road).part {
             RoadPart::Inner => return false,
-            RoadPart::Beside(kind) => {
-                strip == Some(kind) || narrow && matches!(kind, StripKind::Bike | StripKind::Shoulder)
-            }
+            RoadPart::Beside(kind) => strip == Some(kind) || narrow && is_for_narrow(kind),
             _ => true,
         };
         let changes = leaves && (CHANGES_RAD..ALONG_RAD).contains(&across_rad);

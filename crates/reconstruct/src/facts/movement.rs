@@ -1,7 +1,9 @@
 //! Told movements, held against the way that was driven.
 
+use crate::told::doing::Doing;
 use crate::told::side::{Side, Turning};
 use crate::usual::STANDS_MPS;
+use recrash_model::account::Act;
 use recrash_model::geometry::Vec2;
 use recrash_model::math;
 use recrash_model::metrics::CheckResult;
@@ -21,6 +23,9 @@ const PARKS_MPS: f64 = 5.0;
 /// Who passes is faster by this. [m/s]
 const FASTER_MPS: f64 = 0.3;
 
+/// And at no more than this to its way, or to the way back. [deg]
+const PASSES_DEG: f64 = 60.0;
+
 /// Who has come beside another is beside so much of it. [m]
 const BESIDE_M: f64 = 1.0;
 
@@ -32,11 +37,23 @@ const TURNED_DEG: f64 = 50.0;
 const STRAIGHT_DEG: f64 = 50.0;
 const ROUND_DEG: f64 = 60.0;
 
+/// Whose turn is over turns by no more in the last half second. [deg]
+const TURNS_NO_MORE_DEG: f64 = 5.0;
+
+/// Who has yet to turn has turned to the other side by no more; and by so much to its own where the other one has turned by that. [deg]
+const OTHER_WAY_DEG: f64 = 4.0;
+const FAR_IN_TURN_DEG: f64 = 45.0;
+const BEGUN_DEG: f64 = 8.0;
+
 /// Who goes straight on along a lane, and is not told to have left it, has turned by no more. [deg]
 const KEEPS_DEG: f64 = 16.0;
 
-/// Nor has it swung out by so much on its way, and back. [deg]
+/// Nor has it swung by so much on its way, from one side to the other, nor is it so far beside its line. [deg, m]
 const SWINGS_DEG: f64 = 25.0;
+const KEEPS_M: f64 = 2.2;
+
+/// Who comes towards another faces it by more than this. [rad]
+const FACES_RAD: f64 = 2.0;
 
 /// One who moves, and what it meets.
 pub(super) struct Way<'a> {
@@ -68,11 +85,50 @@ impl Way<'_> {
         turned.to_degrees()
     }
 
-    /// How far it had turned at most on its way to the contact, to either side. [deg]
+    /// How far it had turned at most on its way to the contact, from the farthest right to the farthest left. [deg]
     fn most_turned_deg(&self) -> f64 {
+        let [right, left] = self.turned_between_deg();
+        left - right
+    }
+
+    /// How far it had turned at most, to the right as less than 0, and to the left. [deg]
+    fn turned_between_deg(&self) -> [f64; 2] {
         let turns = self.until().windows(2).map(|pair| math::wrap_angle(pair[1].heading - pair[0].heading));
-        let most = |(turned, most): (f64, f64), turn: f64| (turned + turn, most.max((turned + turn).abs()));
-        turns.fold((0.0, 0.0), most).1.to_degrees()
+        let most = |(turned, [right, left]): (f64, [f64; 2]), turn: f64| {
+            let turned = turned + turn;
+            (turned, [right.min(turned), left.max(turned)])
+        };
+        turns.fold((0.0, [0.0, 0.0]), most).1.map(f64::to_degrees)
+    }
+
+    /// Whether somebody who has yet to turn has not turned to the other side; where whom it follows is far in its turn, it is in it too.
+    fn turns_as_told(&self, movement: Movement) -> bool {
+        let to_left = match movement {
+            Movement::LeftTurn => 1.0,
+            Movement::RightTurn => -1.0,
+            _ => return true,
+        };
+        let other = self.other.map_or(0.0, |other| math::wrap_angle(self.met.heading - other.states[0].heading));
+        let least_deg = if to_left * other.to_degrees() > FAR_IN_TURN_DEG { BEGUN_DEG } else { -OTHER_WAY_DEG };
+        to_left * self.turned_deg() >= least_deg
+    }
+
+    /// Whether it has kept its direction in the last half second.
+    fn turns_no_more(&self) -> bool {
+        let until = self.until();
+        let (last, before) = (&until[until.len() - 1], &until[until.len().saturating_sub(6)]);
+        math::wrap_angle(last.heading - before.heading).to_degrees().abs() < TURNS_NO_MORE_DEG
+    }
+
+    /// Whether it has neither swung nor left its line. Who passes, or gets by somebody that comes towards it, may have gone round.
+    fn keeps_line(&self, side: &Side) -> bool {
+        let opposite = math::wrap_angle(self.until()[0].heading - self.met.heading).abs() > FACES_RAD;
+        let gets_by = opposite || side.acts.iter().any(Doing::is_pass);
+        let [right, left] = self.turned_between_deg();
+        match gets_by {
+            true => left.max(-right) < SWINGS_DEG,
+            false => left - right < SWINGS_DEG && self.beside_m().abs() < KEEPS_M,
+        }
     }
 
     /// How far it is beside the line that it began on, to the left. [m]
@@ -110,6 +166,11 @@ impl Way<'_> {
         let ahead = Vec2::from_heading(last.heading);
         let other = self.other.map_or(self.met, |other| other.states[sets_out.min(other.states.len() - 1)]);
         let faster = (last.velocity() - self.met.velocity()).dot(ahead) > FASTER_MPS;
+        // A partner that goes another way is not faster along that.
+        let angle = math::wrap_angle(last.heading - self.met.heading).to_degrees().abs();
+        if self.track.id == "cp" && angle.min(180.0 - angle) > PASSES_DEG {
+            return false;
+        }
         let half_m = 0.5 * (self.track.length_m + self.other.map_or(0.0, |other| other.length_m));
         let beside = (self.met.position() - last.position()).dot(ahead) < half_m - BESIDE_M;
         (faster || beside) && (other.position() - first.position()).dot(ahead) > 0.0
@@ -144,6 +205,7 @@ pub(crate) fn is_against(scenario: &Scenario, state: &ActorState) -> Option<bool
 /// Who drives at an angle to the road is at least at this one, and who leaves the kerb or parks has turned by more where it is not
 /// aside. [deg]
 const SLANTS_DEG: f64 = 15.0;
+const ACROSS_DEG: f64 = 60.0;
 const BENDS_DEG: f64 = 9.5;
 
 /// What is expected, whether it is shown, and what is seen.
@@ -192,9 +254,11 @@ pub(super) fn check(side: &Side, way: &Way<'_>) -> Option<(String, CheckResult, 
         }
         Movement::EnteringTraffic => {
             let (words, degrees) = bent();
-            let out = way.is_off_lanes(&way.track.states[0]) || way.stood();
+            // Who comes along a crossing road enters the ego's straight across.
+            let across = way.slant_deg() >= ACROSS_DEG && !side.acts.iter().any(|doing| doing.act == Act::PullOut);
+            let out = way.is_off_lanes(&way.track.states[0]) || way.stood() || across;
             (
-                out && (beside_m.abs() >= LEFT_LINE_M || degrees >= BENDS_DEG),
+                out && (beside_m.abs() >= LEFT_LINE_M || degrees >= BENDS_DEG || across),
                 format!("{words}, {:.1} m aside", beside_m.abs()),
             )
         }
@@ -224,12 +288,11 @@ pub(super) fn check(side: &Side, way: &Way<'_>) -> Option<(String, CheckResult, 
         | Movement::NmInRoadway => {
             let fits = match side.turning {
                 // Who swings out and back has not gone straight on.
-                Turning::No if way.keeps_lane => {
-                    side.turns_later || turned.abs() < KEEPS_DEG && way.most_turned_deg() < SWINGS_DEG
-                }
+                Turning::No if way.keeps_lane => side.turns_later || turned.abs() < KEEPS_DEG && way.keeps_line(side),
                 Turning::No => side.turns_later || turned.abs() < STRAIGHT_DEG,
                 Turning::Round => turned.abs() > ROUND_DEG,
-                Turning::Left | Turning::Right => true,
+                // Whose turn is over goes straight on.
+                Turning::Left | Turning::Right => !side.turned || movement != Movement::Straight || way.turns_no_more(),
             };
             (fits, turned_words(turned) + &swung_words(turned, way.most_turned_deg()))
         }
@@ -241,6 +304,7 @@ pub(super) fn check(side: &Side, way: &Way<'_>) -> Option<(String, CheckResult, 
     };
     let turns = match side.turning {
         Turning::Left | Turning::Right if side.turns_later => turned.abs() < STRAIGHT_DEG,
+        _ if side.turns_later => way.turns_as_told(movement),
         Turning::Left => turned > least,
         Turning::Right => turned < -least,
         Turning::No | Turning::Round => true,

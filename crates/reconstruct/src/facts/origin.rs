@@ -4,7 +4,7 @@ use crate::facts::keeping::KEEPS_M;
 use crate::told::crash::Told;
 use crate::told::side::{Slant, Turning, is_on_foot};
 use crate::usual::{LANE_M, STANDS_MPS};
-use recrash_model::account::{ContactState, LeftRight, Origin};
+use recrash_model::account::{ContactState, CrashType, LeftRight, Origin};
 use recrash_model::geometry::Vec2;
 use recrash_model::math;
 use recrash_model::rollout::ActorTrack;
@@ -15,6 +15,9 @@ const ASIDE_M: f64 = 1.0;
 
 /// Who is farther aside than this does not come along the ego's lane. [m]
 const BESIDE_M: f64 = 5.0;
+
+/// Who is told behind is no farther ahead. [m]
+const BEHIND_MOST_M: f64 = 2.0;
 
 /// Who comes along the opposite side behind the ego is not farther aside than this. [m]
 const OPPOSITE_M: f64 = 8.5;
@@ -75,7 +78,9 @@ pub(super) fn origin(told: &Told, ego: &ActorTrack, other: &ActorTrack, time_s: 
         Origin::Behind => {
             let lane_m = if told.leaves_opposite() { OPPOSITE_M } else { BESIDE_M };
             let in_line = !(told.begins_in_line() && told.is_beside_line(ego_track, other_track));
-            ahead < 2.0 && same_way && left.abs() < lane_m && in_line
+            // Who backs towards the ego begins behind its rear.
+            let least_m = if told.backs_from_behind() { -0.5 * ego_track.length_m } else { BEHIND_MOST_M };
+            ahead < least_m && same_way && left.abs() < lane_m && in_line
         }
         Origin::Ahead => {
             let faces = same_way || on_foot && !told.comes_across() || state.stands();
@@ -123,13 +128,22 @@ impl Told {
         beside && !aside && (self.cp.lane.is_none() || self.sv.lane.is_none()) && !self.is_at_kerb() && aside_m > NEXT_M
     }
 
-    /// Whether a partner that is told behind the ego is beside its lane, or ahead of it.
+    /// Whether a partner that is told behind the ego is beside its lane, or ahead of it; or one that is told ahead of it beside its lane.
     pub(super) fn is_beside_line(&self, ego: &ActorTrack, track: &ActorTrack) -> bool {
         let sets_out = track.states.iter().position(|state| state.velocity().length() > STANDS_MPS).unwrap_or(0);
         let (own, other) = (&ego.states[sets_out.min(ego.states.len() - 1)], &track.states[sets_out]);
         let (forward, way) = (Vec2::from_heading(own.heading), other.position() - own.position());
         let overlap_m = 0.5 * (ego.width_m + track.width_m) - forward.cross(way).abs();
-        self.is_in_line_behind() && (overlap_m < 0.0 || way.dot(forward) > BEHIND_M)
+        self.is_in_line_ahead() && overlap_m < 0.0
+            || self.is_in_line_behind() && (overlap_m < 0.0 || way.dot(forward) > BEHIND_M)
+    }
+
+    /// Whether the ego is told to have run into the rear of who was ahead of it, and nothing tells that this was in another lane.
+    fn is_in_line_ahead(&self) -> bool {
+        let straight = self.sv.turning == Turning::No && self.sv_aside().is_none();
+        let stays = self.cp.lane.is_none() && self.cp.came_over.is_none() && !self.leaves_its_lane();
+        let moved = self.cp.state != ContactState::Reversing && self.comes_along_lanes();
+        self.origin == Origin::Ahead && self.crash_type == CrashType::FrontToRear && straight && stays && moved
     }
 
     /// Whether the partner is told to be behind the ego, and nothing tells that it was in another lane then.

@@ -21,6 +21,9 @@ const AHEAD_M: f64 = 8.0;
 const CROSSING_M: f64 = 30.0;
 const BRAKES_MPS2: f64 = 2.0;
 
+/// For whom an ego slows on its way it does so in the last of that. [steps]
+const LATE_STEPS: usize = 30;
+
 /// Who stays close to the ego is no farther from its way when the two touch. [m]
 const CLOSE_M: f64 = 4.0;
 
@@ -178,8 +181,8 @@ impl<'a> Seen<'a> {
                 Role::Lead | Role::Thing => self.leads(extra, track),
                 Role::Slower => self.slows_ahead(track),
                 Role::Walker if extra.stays => self.stays_close(track) && self.is_on_side(extra, track),
-                Role::Walker | Role::Animal => self.crosses(track, AHEAD_M) && self.is_on_side(extra, track),
-                Role::Crosser => self.crosses(track, CROSSING_M) && self.is_on_side(extra, track),
+                Role::Walker | Role::Animal => self.crosses(extra, track, AHEAD_M) && self.is_on_side(extra, track),
+                Role::Crosser => self.crosses(extra, track, CROSSING_M) && self.is_on_side(extra, track),
                 Role::Oncoming => self.comes_by(extra, track),
                 Role::Beside => self.stands_beside(extra, track),
                 Role::Backer => self.backs_out(extra, track),
@@ -264,13 +267,18 @@ impl<'a> Seen<'a> {
     }
 
     /// Whether somebody passes ahead of the ego, from one side of it to the other, while it stands or slows before the contact.
-    fn crosses(&self, track: &ActorTrack, within_m: f64) -> bool {
+    fn crosses(&self, extra: &Extra, track: &ActorTrack, within_m: f64) -> bool {
         let last = self.until.min(track.states.len() - 1);
-        (1..=last).any(|step| {
+        (self.first_step(extra)..=last).any(|step| {
             let ((ahead_m, left_m), (_, before_m)) = (self.beside(track, step), self.beside(track, step - 1));
             let near = (0.0..within_m + self.stopping_m(step)).contains(&ahead_m);
             near && left_m * before_m <= 0.0 && left_m != before_m && self.gives_way(step)
         })
+    }
+
+    /// From when it may be met: for whom the ego slowed that had stood before, as it slows.
+    fn first_step(&self, extra: &Extra) -> usize {
+        if extra.late { self.until.saturating_sub(LATE_STEPS).max(1) } else { 1 }
     }
 
     /// Whether somebody is close to the ego, beside its way.
@@ -297,7 +305,9 @@ impl<'a> Seen<'a> {
             let ((ahead_m, left_m), (before_m, _)) = (self.beside(track, step), self.beside(track, step - 1));
             let facing = math::wrap_angle(track.states[step].heading - self.ego.states[0].heading).abs();
             let by = ahead_m <= 0.0 && before_m > 0.0 && facing > 2.0;
-            by && (1.5..4.0 * LANE_M).contains(&left_m) && (self.gives_way(step) || !extra.awaited)
+            by && step >= self.first_step(extra)
+                && (1.5..4.0 * LANE_M).contains(&left_m)
+                && (self.gives_way(step) || !extra.awaited)
         })
     }
 

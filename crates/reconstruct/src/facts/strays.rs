@@ -1,12 +1,14 @@
 //! Whether somebody strays: goes another way than is told, or than anybody drives.
 
 use crate::facts::contact::first_touch;
-use crate::facts::keeping::{self, ABSURD};
+use crate::facts::keeping::{self, ABSURD, NARROW_M, is_for_narrow};
 use crate::facts::movement;
 use crate::facts::seen::Seen;
 use crate::told::crash::Told;
-use recrash_model::account::Origin;
-use recrash_model::geometry::Vec2;
+use crate::told::layout::strip_of;
+use crate::usual::STANDS_MPS;
+use recrash_model::account::{Origin, Striker};
+use recrash_model::geometry::{OrientedBox, Vec2};
 use recrash_model::kinds::PartnerKind;
 use recrash_model::math;
 use recrash_model::rollout::{ActorState, ActorTrack, EventKind, Rollout, STEP_S};
@@ -90,9 +92,67 @@ pub(crate) fn off_its_way(told: &Told, scenario: &Scenario, rollout: &Rollout) -
             + usize::from(keeping::leaves_whom_it_passes(told, ego, track, time_s))
             + if keeping::goes_out_of_way(told, ego, track, time_s) { ABSURD } else { 0 }
             + if told.is_beside_line(ego, track) || told.is_far_beside(ego, track) { ABSURD } else { 0 }
+            + if strikes_as_told(told, rollout) == Some(false) { ABSURD } else { 0 }
+            + if told.keeps_within_lanes() && is_over_edge(told, scenario, track, time_s) { OVER_EDGE } else { 0 }
     };
     (2.0 * off_s) as usize + touch.map_or(0, weaves)
 }
+
+/// That nobody tells that it drove on the other side, or beside the lanes, is worse than four steps from the told zones. [half seconds]
+const OVER_EDGE: usize = 3 * ABSURD;
+
+/// Who strikes the other comes nearer to it by this. [m/s]
+const CLOSES_MPS: f64 = 0.2;
+
+/// Whether who is told in words to have struck the other comes nearer to that as they touch; nothing where words do not tell, or a door, a gate
+/// or a third one takes part.
+fn strikes_as_told(told: &Told, rollout: &Rollout) -> Option<bool> {
+    let plain =
+        told.thing.is_none() && told.door.is_none() && !told.pushed && told.rig.is_none() && told.edge.is_none();
+    let (striker, touch) = (told.strikes.filter(|_| plain)?, first_touch(rollout)?);
+    let ego = rollout.ego_track();
+    let own = OrientedBox::new(touch.ego.pose(), ego.length_m, ego.width_m);
+    let normal = own.contact_normal(&touch.other_box, touch.ego.velocity() - touch.other.velocity());
+    let closing_mps = match striker {
+        Striker::Sv => touch.ego.velocity().dot(normal),
+        Striker::Cp => -touch.other.velocity().dot(normal),
+        Striker::Both => return None,
+    };
+    Some(closing_mps >= CLOSES_MPS)
+}
+
+/// Who comes along the lanes has its flanks in those of its direction, but for so much, until so long before the contact. [m, s]
+const OVER_EDGE_M: f64 = 0.3;
+const OVER_EDGE_S: f64 = 3.0;
+
+/// Whether somebody drove over the line between the directions, or over the edge of the lanes.
+fn is_over_edge(told: &Told, scenario: &Scenario, track: &ActorTrack, contact_s: f64) -> bool {
+    let network = scenario.network();
+    let strip = told.cp.lane.and_then(strip_of);
+    let flank_m = 0.5 * track.width_m - OVER_EDGE_M;
+    let narrow = track.width_m < NARROW_M;
+    let until = (((contact_s - OVER_EDGE_S) / STEP_S).max(0.0) as usize).min(track.states.len() - 1);
+    let first = track.states[0].heading;
+    let on_its_road = |state: &&ActorState| math::wrap_angle(state.heading - first).abs() < LEAVES_ROAD_RAD;
+    let driven = track.states[..=until].iter().step_by(5).take_while(on_its_road);
+    driven.filter(|state| state.speed() > STANDS_MPS).any(|state| {
+        let out = |side: f64| {
+            let flank = state.position() + Vec2::from_heading(state.heading).left() * (side * flank_m);
+            let Some(id) = network.lane_at(flank, state.heading) else { return true };
+            let lane = network.lane(id);
+            let along = math::wrap_angle(lane.heading(lane.local(flank).0) - state.heading).abs() < math::FRAC_PI_2;
+            match network.road(lane.road).part {
+                RoadPart::Inner => false,
+                RoadPart::Beside(kind) => strip != Some(kind) && !(narrow && is_for_narrow(kind)),
+                _ => !along,
+            }
+        };
+        out(1.0) || out(-1.0)
+    })
+}
+
+/// Who has turned by more has left its road. [rad]
+const LEAVES_ROAD_RAD: f64 = 0.3;
 
 /// Who drives beside the kerb until so long before the contact, with its flank by so much, comes from there. [s, m]
 const BESIDE_S: f64 = 1.0;

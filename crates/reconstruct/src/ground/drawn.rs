@@ -65,7 +65,8 @@ pub(crate) fn ground_for(told: &Told) -> Ground {
     };
     let across = Across { lanes, lane, oncoming, beside };
     let ground = with_way(map, vec!["main+".to_owned()], across, vec![APPROACH_M], false);
-    let at_kerb = told.is_at_kerb() && !lot && told.place != PlaceKind::Highway && !one_way;
+    let at_kerb =
+        (told.is_at_kerb() || told.sets_off_at_kerb()) && !lot && told.place != PlaceKind::Highway && !one_way;
     let stands_m = if at_kerb { ground.kerbs_m[1] } else { 0.0 };
     Ground { stands_m, ..ground }
 }

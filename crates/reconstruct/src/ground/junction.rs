@@ -78,7 +78,8 @@ pub(super) fn junction(told: &Told, crossing: bool) -> Ground {
         Turning::No | Turning::Round => "own",
     };
     let one_way = is_one_way(told);
-    let at_kerb = told.is_at_kerb() && !crossing && told.sv.turning == Turning::No && !one_way;
+    let at_kerb =
+        (told.is_at_kerb() || told.sets_off_at_kerb()) && !crossing && told.sv.turning == Turning::No && !one_way;
     let parks = at_kerb
         || told.stands_beside(false)
         || has(told, Role::Kerb)

@@ -2,11 +2,11 @@
 
 use crate::told::crash::Told;
 use crate::told::layout::strip_of;
-use crate::told::others::Role;
+use crate::told::others::{Extra, Role};
 use crate::told::side::Turning;
 use crate::told::zones::side_of;
 use crate::usual::LANE_M;
-use recrash_model::account::{ContactState, LaneWord, LeftRight, Origin};
+use recrash_model::account::{ContactState, KindGroup, LaneWord, LeftRight, Origin};
 use recrash_model::template::Movement;
 use recrash_model::zones::ContactZone;
 
@@ -40,6 +40,9 @@ pub(super) fn lanes_for(told: &Told, usual: usize) -> usize {
         Some(LaneWord::Left | LaneWord::Right | LaneWord::LeftTurn | LaneWord::RightTurn) => 2,
         _ => 1,
     });
+    // Beside the ego on both sides.
+    let between = told.is_beside_other(LeftRight::Left) && told.sv.lane.is_none() && passes_right(told);
+    let usual = if between { usual.max(3) } else { usual };
     let more = usize::from(told.more_lanes) + usize::from(told.layout.turn_lane || told.layout.right_lane);
     let lanes = told.lanes.map_or(usual, usize::from).max(needed.max().unwrap_or(1)) + more;
     lanes.clamp(1, MOST_LANES)
@@ -54,7 +57,9 @@ pub(super) fn usual_lane(told: &Told, lanes: usize, one_way: bool) -> usize {
     match lanes {
         _ if one_way => 0,
         _ if told.edge == Some(LeftRight::Left) || told.layout.left_to_come || told.is_met_over_line() => 0,
-        2.. if told.edge.is_none() && (to_right || passes_right(told)) => lanes - 2,
+        2.. if told.edge.is_none() && (to_right || passes_right(told) || told.is_beside_other(LeftRight::Right)) => {
+            lanes - 2
+        }
         _ => lanes - 1,
     }
 }
@@ -115,6 +120,21 @@ fn passes_right(told: &Told) -> bool {
 }
 
 impl Told {
+    /// Whether another vehicle drives in the lane beside an ego that keeps its own, or comes over from there.
+    fn is_beside_other(&self, side: LeftRight) -> bool {
+        let along = matches!(self.origin, Origin::Behind | Origin::Ahead | Origin::Beside { .. });
+        let beside = |extra: &Extra| match (extra.role, extra.near) {
+            (Role::Merger | Role::Abreast, _) => extra.side == Some(side),
+            (_, Some(near)) => near.place == Some(Origin::Beside { side }) && near.does.is_in_lane(),
+            _ => false,
+        };
+        let drives = |extra: &Extra| {
+            matches!(extra.kind.group(), KindGroup::Car | KindGroup::Truck) && !extra.parked && beside(extra)
+        };
+        let plain = self.edge.is_none() && !self.is_at_kerb() && self.sv.turning == Turning::No;
+        along && plain && self.sv_aside().is_none() && self.wanted.iter().any(drives)
+    }
+
     /// Whether the partner comes over the line between the directions to the ego's left, which is then in the lane beside that: from the
     /// opposite direction, out of a turn against the ego's way, or by the opposite side past it.
     fn is_met_over_line(&self) -> bool {

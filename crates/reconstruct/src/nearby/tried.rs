@@ -54,7 +54,15 @@ impl<'a> Scene<'a> {
                 list.extend(self.aside(near, side.or(Some(LeftRight::Right)), half_m));
             }
             _ if near.does == Does::PullsOut => list.extend(self.pulling_out(near.place, half_m)),
-            _ if near.does == Does::Passes => list.extend(self.passers(near.place, half_m)),
+            _ if near.does == Does::Passes => {
+                let ways = || self.passers(near.place, half_m).into_iter();
+                if let Some(Does::GoesAside(Some(side))) = near.also {
+                    list.extend(
+                        [OVER_M, ASIDE_M].into_iter().flat_map(|by_m| ways().map(move |way| way.aside(side, by_m))),
+                    );
+                }
+                list.extend(ways());
+            }
             Some(Origin::Opposite) => {
                 if !stands {
                     list.extend(self.oncoming(half_m));
@@ -188,8 +196,9 @@ impl<'a> Scene<'a> {
     }
 }
 
-/// Who goes aside in its lane does so by this. [m]
+/// Who goes aside in its lane does so by this; who comes over the line beside the ego first by that. [m]
 const ASIDE_M: f64 = 0.7;
+const OVER_M: f64 = 1.0;
 
 impl Scene<'_> {
     /// Along its lane, and aside in it.
@@ -197,10 +206,11 @@ impl Scene<'_> {
         let drives = Near { does: Does::Drives, ..near };
         let sides = side.map_or(vec![LeftRight::Left, LeftRight::Right], |side| vec![side]);
         let ways = || self.drives(drives, half_m * 2.0).into_iter().filter(|way| way.speed_mps > 0.0);
-        let shifted = |side: LeftRight| {
-            let shifts_m = if side == LeftRight::Left { -ASIDE_M } else { ASIDE_M };
-            ways().filter(|way| way.stops_m.is_none()).map(move |way| Way { shifts_m, ..way })
+        let over = matches!(near.place, Some(Origin::Beside { .. }));
+        let by_m: &[f64] = if over { &[OVER_M, ASIDE_M] } else { &[ASIDE_M] };
+        let shifted = |(side, by_m): (LeftRight, f64)| {
+            ways().filter(|way| way.stops_m.is_none()).map(move |way| way.aside(side, by_m))
         };
-        sides.into_iter().flat_map(shifted).collect()
+        by_m.iter().flat_map(|by_m| sides.iter().map(move |side| (*side, *by_m))).flat_map(shifted).collect()
     }
 }

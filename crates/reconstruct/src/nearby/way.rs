@@ -1,6 +1,7 @@
 //! How somebody comes to be near.
 
 use crate::pace::plain::{next, when};
+use recrash_model::account::LeftRight;
 use recrash_model::geometry::{Pose, Vec2};
 use recrash_model::scenario::{ActorPlan, Deed, Leg, Place};
 
@@ -55,6 +56,11 @@ impl Way {
     pub(super) fn straight(at: Pose, speed_mps: f64, at_s: f64) -> Self {
         let from = Pose { position: at.position - Vec2::from_heading(at.heading) * (speed_mps * at_s), ..at };
         Self { speed_mps, ..Self::stands(from) }
+    }
+
+    /// The same, and aside by so much.
+    pub(super) fn aside(self, side: LeftRight, by_m: f64) -> Self {
+        Self { shifts_m: if side == LeftRight::Left { -by_m } else { by_m }, ..self }
     }
 
     pub(super) fn plan(&self, contact_s: f64) -> ActorPlan {

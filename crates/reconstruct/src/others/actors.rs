@@ -20,7 +20,9 @@ pub(crate) fn actors(told: &Told, staging: &Staging, recorded: &ActorPlan, alone
     let partner = alone.actors.iter().find(|track| track.id == "cp");
     let stand = stands(ego, until).last().copied();
     let scene = Scene { told, ground: &staging.ground, recorded, ego, partner, until, stand };
-    told.extras.iter().flat_map(|extra| scene.actors(extra)).collect()
+    // For whom it slowed on its way it did not stand.
+    let on_way = Scene { stand: None, ..scene };
+    told.extras.iter().flat_map(|extra| if extra.late { &on_way } else { &scene }.actors(extra)).collect()
 }
 
 impl Scene<'_> {

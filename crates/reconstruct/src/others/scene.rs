@@ -28,6 +28,7 @@ pub(super) const BESIDE_M: f64 = 2.4;
 pub(super) const ROOM_BESIDE_M: f64 = 0.6;
 
 /// The two, as they come to the contact.
+#[derive(Clone, Copy)]
 pub(super) struct Scene<'a> {
     pub(super) told: &'a Told,
     pub(super) ground: &'a Ground,

@@ -70,9 +70,13 @@ pub(super) fn line_y_m(told: &Told, staging: &Staging) -> Option<f64> {
         .or_else(|| told.strip_y_m(&staging.ground))
         .or_else(|| {
             let from_left_m = told.cp_from_left_m()?;
-            let left = (staging.cp.position, from_left_m);
-            let lane_m = lanes::left_lane_m(&staging.ground, staging.cp_came, left).filter(|_| !told.back_straight);
-            Some(lane_m.unwrap_or(staging.cp.position.y + from_left_m))
+            let lane_m = |from_left_m: f64| {
+                let left = (staging.cp.position, from_left_m);
+                lanes::left_lane_m(&staging.ground, staging.cp_came, left).filter(|_| !told.back_straight)
+            };
+            // From the side on which a lane is, where none is told.
+            let either = || told.may_come_from_either().then(|| lane_m(-from_left_m)).flatten();
+            Some(lane_m(from_left_m).or_else(either).unwrap_or(staging.cp.position.y + from_left_m))
         })
         .or_else(|| {
             beside(told).map(|side| staging.sv.position.y + if side == LeftRight::Left { LANE_M } else { -LANE_M })

@@ -45,12 +45,12 @@ pub(super) const LEAST_BEFORE_M: f64 = 1.0;
 pub(super) fn line_to(told: &Told, staging: &Staging, pace: Pace, at: impl Fn(Pose) -> Place) -> (ActorPlan, Pose) {
     let cp = &told.cp;
     let ground = &staging.ground;
-    if let Some(begin_m) = staging.cp_follows_m.map(|at_m| at_m - pace.driven_m)
+    if let Some((begin_m, beside_m)) = staging.cp_follows_m.map(|(at_m, beside_m)| (at_m - pace.driven_m, beside_m))
         && (0.0..ground.first_m()).contains(&begin_m)
     {
         let legs =
             vec![Leg::Lanes { roads: ground.route.clone(), until_m: None, lane: None, against: false, reverse: false }];
-        let begin = ground.sv_pose(begin_m);
+        let begin = ground.pose(begin_m, beside_m);
         let plan =
             ActorPlan { speed_mps: pace.speed_mps, course: legs, acts: pace.acts, ..ActorPlan::standing(at(begin)) };
         return (plan, begin);

@@ -318,7 +318,7 @@ pub(super) fn thrown(told: &Told, staging: &Staging) -> Vec<Actor> {
     let askew = math::wrap_angle(staging.cp.heading - staging.cp_came).abs() > ASKEW_RAD;
     let (begin, course) = match askew && pace.driven_m > LEAST_BEFORE_M {
         true => {
-            let cp_follows_m = staging.cp_follows_m.map(|at_m| at_m - THROW_M);
+            let cp_follows_m = staging.cp_follows_m.map(|(at_m, beside_m)| (at_m - THROW_M, beside_m));
             let before = Staging { cp: pushed, cp_follows_m, bend: None, ..staging.clone() };
             let (plan, begin) = line_to(told, &before, pace.clone(), at);
             (begin, plan.course)

@@ -1,6 +1,7 @@
 //! What the acts tell of the ways of the two, beside their movements.
 
 use crate::reading::order::steps;
+use crate::reading::words::text;
 use crate::told::crash::Told;
 use crate::told::doing::Doing;
 use crate::told::side::{Side, Slant, Turning};
@@ -169,6 +170,24 @@ impl Told {
             && !comes(&place)
     }
 
+    /// "Was maneuvering around the parked truck": out of its line, away from the touched side where no other is told.
+    fn goes_round_standing(&mut self, sv: &Party) {
+        let pass = sv.acts.iter().rfind(|fact| fact.act == Act::Pass && !fact.after_contact);
+        let Some(pass) = pass.filter(|fact| text(&fact.source).contains("around")) else { return };
+        let stands = self.cp.state.stands() && self.thing.is_none() && self.sv.state == ContactState::Moving;
+        let touched = side_of(&self.sv.zones).map(|left| if left > 0.0 { LeftRight::Left } else { LeftRight::Right });
+        let there = match self.origin {
+            Origin::Ahead | Origin::Parked { side: None } => touched,
+            Origin::Beside { side } | Origin::Parked { side: Some(side) } => Some(side),
+            _ => return,
+        };
+        let to = pass.side.or(there.map(LeftRight::other)).unwrap_or(LeftRight::Left);
+        let free = self.sv.movement == Some(Movement::Passing) && self.sv.aside.is_none();
+        if stands && free && touched != Some(to) && self.sv.turning == Turning::No {
+            (self.sv.aside, self.sv.goes_round) = (Some(to), !pass.begun);
+        }
+    }
+
     /// What the ego did because of the partner: when, and to which side.
     fn reactions(&mut self, sv: &Party, partner: &Party) {
         if self.sv.state != ContactState::Moving || self.thing.is_some() {
@@ -190,8 +209,9 @@ impl Told {
         }
     }
 
-    /// The ego that passes the partner on the other side goes round it there.
+    /// The ego that passes the partner on the other side goes round it there; so does one that goes round who stands.
     fn goes_round(&mut self, sv: &Party) {
+        self.goes_round_standing(sv);
         let pass = sv.acts.iter().rfind(|fact| fact.act == Act::Pass && !fact.after_contact && !fact.begun);
         let Some(to) = pass.and_then(|fact| fact.side).filter(|_| self.sv.acts.iter().any(Doing::is_pass)) else {
             return;

@@ -12,7 +12,7 @@ use crate::told::lies::Lies;
 use crate::told::side::Turning;
 use crate::told::times::CONTACT_S;
 use recrash_model::account::{
-    Account, Act, ContactState, CrashType, FirstContact, KindGroup, LeftRight, Origin, PlaceKind, Untold, told,
+    Account, Act, ContactState, CrashType, FirstContact, KindGroup, LeftRight, Origin, PlaceKind, Source, Untold, told,
 };
 
 impl Told {
@@ -85,6 +85,7 @@ impl Told {
         let diagonal = edge::is_diagonal(partner, &cp);
         cp.backs_in = origin::backs_in(partner, cp.state, origin, place);
         let striker = told(&account.striker);
+        let by_words = account.striker.as_ref().is_some_and(|fact| matches!(fact.source, Source::Words { .. }));
         // What rolls into the ego's flank comes there after its front; that a thing is there first is only a rule.
         let on_flank = !sv.zones.is_empty() && !sv.zones.iter().any(|zone| zone.is_front());
         let into_flank = thing.is_some() && cp.state == ContactState::Moving && on_flank;
@@ -134,6 +135,7 @@ impl Told {
             wanted_rig,
             rig: None,
             striker,
+            strikes: striker.filter(|_| by_words),
             lanes: told(&account.place.lanes),
             layout: Layout::of(account, partner),
             more_lanes: false,

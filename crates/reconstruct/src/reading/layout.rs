@@ -5,6 +5,7 @@ use crate::told::layout::{Counted, Layout, Standing};
 use recrash_model::account::{
     Account, Act, ActFact, Fact, LaneWord, LeftRight, Origin, Party, RoadFeature, Source, told,
 };
+use recrash_model::template::Movement;
 
 impl Counted {
     fn of(text: &str) -> Option<Self> {
@@ -34,7 +35,8 @@ impl Layout {
             one_way: has(RoadFeature::OneWay),
             centre_line: has(RoadFeature::DoubleYellowLine),
             right_lane: goes_out_right(account, partner),
-            turn_lane: has(RoadFeature::TurnLane) && goes_to_turn_lane(account, partner),
+            turn_lane: has(RoadFeature::TurnLane) && goes_to_turn_lane(account, partner)
+                || goes_out_left(account, partner),
             left_to_come: goes_to_turn_left(&account.sv),
             rear_door: rear_door(account, partner),
         }
@@ -55,13 +57,26 @@ fn goes_to_turn_lane(account: &Account, partner: &Party) -> bool {
     lane(&account.sv) == Some(LaneWord::Left) && goes
 }
 
-/// Whether the partner changes lanes to its right behind an ego in the right lane, which is then the right one of those that go on.
+/// Whether the partner changes lanes to its left behind an ego in the left lane, which is then the left one of those that go on.
+fn goes_out_left(account: &Account, partner: &Party) -> bool {
+    let out = |fact: &ActFact| fact.act == Act::LaneChange && fact.side == Some(LeftRight::Left) && !fact.after_contact;
+    let left = told(&account.sv.lane) == Some(LaneWord::Left) && told(&partner.lane).is_none();
+    left && told(&account.came_from) == Some(Origin::Behind) && partner.acts.iter().any(out)
+}
+
+/// Whether the partner changes lanes to its right behind an ego in the right lane, or out of the lane on the right of that: it is then the
+/// right one of those that go on.
 fn goes_out_right(account: &Account, partner: &Party) -> bool {
     let out =
         |fact: &ActFact| fact.act == Act::LaneChange && fact.side == Some(LeftRight::Right) && !fact.after_contact;
     let right = told(&account.sv.lane) == Some(LaneWord::Right);
     let stays = told(&partner.lane).is_none_or(|lane| lane == LaneWord::Right);
-    right && stays && told(&account.came_from) == Some(Origin::Behind) && partner.acts.iter().any(out)
+    let changes = matches!(told(&partner.movement), Some(Movement::ChangingLanes | Movement::Merging));
+    match told(&account.came_from) {
+        Some(Origin::Behind) => right && stays && partner.acts.iter().any(out),
+        Some(Origin::Beside { side: LeftRight::Right }) => right && told(&partner.lane).is_none() && changes,
+        _ => false,
+    }
 }
 
 fn standing(account: &Account, party: &Party) -> Standing {

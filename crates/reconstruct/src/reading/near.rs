@@ -57,7 +57,11 @@ impl Does {
             Act::Turn if fact.side == Some(LeftRight::Left) && place == Some(Origin::Opposite) => Self::TurnsLeft,
             Act::Turn if in_lanes && on_wheels => Self::Turns(fact.side),
             Act::PullOut if at_kerb => Self::PullsOut,
-            Act::Drift | Act::Swerve if on_wheels => Self::GoesAside(fact.side),
+            // From beside the ego towards that.
+            Act::Drift | Act::Swerve if on_wheels => Self::GoesAside(fact.side.or(match place {
+                Some(Origin::Beside { side }) => Some(side.other()),
+                _ => None,
+            })),
             Act::PullOver if on_wheels => Self::PullsOver(fact.side),
             _ => return None,
         })
@@ -72,7 +76,8 @@ impl Near {
         }
         if other.kind.value.group() == KindGroup::Object {
             let place = other.place.as_ref().map(|fact| fact.value);
-            let rolls = other.acts.iter().any(|fact| !fact.after_contact && moves(fact.act));
+            let fixed = matches!(other.kind.value, Kind::Wall | Kind::Pole | Kind::Sign);
+            let rolls = !fixed && other.acts.iter().any(|fact| !fact.after_contact && moves(fact.act));
             let does = if rolls { Does::Crosses } else { Does::Stands };
             let (across, in_lane, also, first) = (false, false, None, First::Untold);
             return Some(Self { place, across, does, in_lane, also, first, number });

@@ -134,6 +134,7 @@ pub(super) fn wanted(told: &Told, account: &Account) -> Vec<Extra> {
                     parked,
                     first,
                     again,
+                    late: story.is_slowed_for_later(told, other),
                     awaited,
                     behind,
                     between,

@@ -86,6 +86,15 @@ impl Story<'_> {
         span(&other.kind.source).zip(begins).is_some_and(|((named, _), begins)| named < begins)
     }
 
+    /// Whether somebody is named with the words that an ego which had stood slowed again, on its way.
+    pub(super) fn is_slowed_for_later(&self, told: &Told, other: &Other) -> bool {
+        let last = self.account.sv.acts.iter().rfind(|fact| !fact.after_contact);
+        let slows = last.filter(|fact| fact.act == Act::Slow && told.sv.state == ContactState::Moving);
+        let Some((_, end)) = slows.and_then(|fact| span(&fact.source)) else { return false };
+        let named = span(&other.kind.source).is_some_and(|(start, _)| (end..end + NAMED_WITHIN).contains(&start));
+        named && told.sv.stood_first
+    }
+
     /// Whether somebody on foot, or an animal, is whom the ego slowed or stood for.
     pub(super) fn is_met(&self, other: &Other) -> bool {
         let Some((named, end)) = span(&other.kind.source) else { return false };

@@ -120,6 +120,12 @@ impl Told {
         Some(from_left.unwrap_or(if against > 0.0 { -1.0 } else { 1.0 }) * way_m)
     }
 
+    /// Whether the partner changes lanes behind the ego, and nobody tells to which side.
+    pub(crate) fn may_come_from_either(&self) -> bool {
+        let changes = matches!(self.cp.movement, Some(Movement::ChangingLanes | Movement::Merging));
+        self.origin == Origin::Behind && changes && self.cp.aside.is_none() && self.sv.turning == Turning::No
+    }
+
     /// Whether the partner turns out of a crossing road into the ego's, against the ego's way.
     fn comes_against(&self) -> bool {
         let turns = match self.cp.turning {

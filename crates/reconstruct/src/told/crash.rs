@@ -69,6 +69,8 @@ pub(crate) struct Told {
     /// So many of the others are told to have touched the partner first.
     pub(crate) throwers: usize,
     pub(crate) striker: Option<Striker>,
+    /// It is words that tell who struck the other.
+    pub(crate) strikes: Option<Striker>,
     /// Lanes in the ego's direction.
     pub(crate) lanes: Option<u8>,
     /// What is told of the road and of places on it beside.

@@ -55,6 +55,14 @@ impl Told {
         self.layout.sv.at_kerb && moves && leaves && left
     }
 
+    /// Whether an ego that stood at the kerb set off straight on, and touches one that stands there ahead of it: both are beside the lanes.
+    pub(crate) fn sets_off_at_kerb(&self) -> bool {
+        let moves = matches!(self.sv.state, ContactState::Moving | ContactState::SettingOff) && self.sv.stood_first;
+        let straight = self.sv.turning == Turning::No && self.sv_aside().is_none() && self.sv.lane.is_none();
+        let ahead = self.origin == Origin::Ahead && self.stands_beside(false);
+        self.layout.sv.at_kerb && moves && straight && ahead
+    }
+
     /// Whether an ego that is not parked stopped at the kerb, and has not moved since.
     fn stops_at_kerb(&self) -> bool {
         let steps = self.sv.phases.first().is_none_or(|phase| *phase == Phase::Stands);

@@ -29,6 +29,13 @@ pub(crate) enum Does {
     Crosses,
 }
 
+impl Does {
+    /// Whether who does this beside the ego drives in a lane, or may.
+    pub(crate) const fn is_in_lane(self) -> bool {
+        matches!(self, Self::Untold | Self::Drives | Self::Slows | Self::Passes | Self::Changes(_) | Self::GoesAside(_))
+    }
+}
+
 /// What is told of somebody who has no part in what the ego does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Near {

@@ -110,6 +110,8 @@ pub(crate) struct Extra {
     pub(crate) first: bool,
     /// It is told to stand again where the ego, which had set off, slows or stops: it moves up before that.
     pub(crate) again: bool,
+    /// The ego, which had stood and drove on, slowed for it.
+    pub(crate) late: bool,
     /// The ego stands or slows for it, or it is not told that somebody else is the reason.
     pub(crate) awaited: bool,
     /// The ego has gone round it, and is back in its lane.
@@ -139,6 +141,7 @@ impl Extra {
             parked: false,
             first: false,
             again: false,
+            late: false,
             awaited: true,
             behind: false,
             between: false,

@@ -36,7 +36,14 @@ impl Told {
         let (sv, cp) = (&self.sv, &self.cp);
         let straight = cp.turning == Turning::No && sv.turning == Turning::No && cp.slants.is_none() && !cp.backs_in;
         let backs = self.origin == Origin::Ahead && cp.state == ContactState::Reversing;
-        backs && straight && cp.zones.contains(&ContactZone::Rear) && sv.zones.contains(&ContactZone::Front)
+        let rear = cp.zones.is_empty() || cp.zones.contains(&ContactZone::Rear);
+        backs && straight && rear && sv.zones.contains(&ContactZone::Front)
+    }
+
+    /// Whether the partner backs towards the ego from behind that, and did not swing or turn off for it.
+    pub(crate) fn backs_from_behind(&self) -> bool {
+        let plain = self.cp.slants.is_none() && !self.cp.backs_in && self.cp.turning == Turning::No;
+        self.origin == Origin::Behind && self.cp.state == ContactState::Reversing && plain
     }
 
     /// On which side of the ego the partner passes it in the lane for buses, in which the ego is not.
@@ -163,6 +170,25 @@ impl Told {
             PlaceKind::Highway | PlaceKind::ParkingLot | PlaceKind::Garage | PlaceKind::Driveway | PlaceKind::Alley
         );
         along && !over && drives && street && self.cp.lane != Some(LaneWord::Opposing) && self.thing.is_none()
+    }
+
+    /// Whether the partner comes along lanes of the ego's direction, and nothing tells that it was beside them, or on the other side.
+    pub(crate) fn keeps_within_lanes(&self) -> bool {
+        let along = matches!(self.origin, Origin::Behind | Origin::Beside { .. });
+        let elsewhere = matches!(
+            self.cp.movement,
+            Some(
+                Movement::CrossingIntoOpposingLane
+                    | Movement::WrongWay
+                    | Movement::UTurn
+                    | Movement::EnteringTraffic
+                    | Movement::ParkingManeuver
+            )
+        );
+        let drives = self.cp.state == ContactState::Moving && !elsewhere && self.comes_along_lanes();
+        let place = matches!(self.place, PlaceKind::Street | PlaceKind::Intersection | PlaceKind::Highway);
+        let beside = self.is_at_kerb() || self.bus_lane().is_some() || self.edge.is_some() || self.pushed;
+        along && drives && place && !beside && self.cp.lane != Some(LaneWord::Opposing)
     }
 
     /// Whether the partner stood beside the lanes before it came: at the kerb, in a stall or in a driveway.

@@ -11,10 +11,23 @@ pub(crate) fn zones_off(told: &[ContactZone], seen: ContactZone) -> u32 {
     let farthest = along.filter_map(|zone| zone.steps_apart(seen)).max().map_or(0, u32::from);
     let is_rear = told.iter().any(|zone| zone.is_rear()) && !told.iter().any(|zone| zone.is_front());
     match nearest {
+        // All of an end that is ticked is its middle.
+        0 if is_whole_end(told, seen) => 1,
         0 => 0,
         _ if is_rear && seen.is_front() => nearest.max(farthest).max(REAR_OFF),
         _ => nearest.max(farthest),
     }
+}
+
+/// Whether a corner is one of an end of which both corners and the middle are told.
+fn is_whole_end(told: &[ContactZone], seen: ContactZone) -> bool {
+    use ContactZone as Z;
+    let end = match seen {
+        Z::FrontLeft | Z::FrontRight => [Z::FrontLeft, Z::Front, Z::FrontRight],
+        Z::RearLeft | Z::RearRight => [Z::RearLeft, Z::Rear, Z::RearRight],
+        _ => return false,
+    };
+    end.iter().all(|zone| told.contains(zone))
 }
 
 /// Who is told to touch with its rear is so many steps off with its front. [steps]

@@ -4,7 +4,7 @@ use crate::ego::plan::sv_at_contact;
 use crate::ground::way::Ground;
 use crate::told::crash::Told;
 use crate::told::side::{Turning, size_of};
-use crate::told::zones::zones_off;
+use crate::told::zones::{side_of, zones_off};
 use crate::touch::boxes::{cp_points, sv_points, touch, velocity, zone_pairs};
 use crate::touch::fit::{aside_before_m, is_face_on};
 use crate::touch::headings::headings;
@@ -25,12 +25,19 @@ pub(super) fn bodies(told: &Told, ground: &Rc<Ground>) -> Vec<Staging> {
         let Some(sv) = sv_at_contact(told, ground, sv_s_m) else { continue };
         let behind_m = 0.5 * (size_of(&told.sv).0 + size_of(&told.cp).0);
         let behind = ground.sv_pose((sv_s_m - behind_m).max(0.0)).heading;
-        trial += 1;
-        if let Some((back_m, cp, (sv_seen, cp_seen))) = follows(told, ground, (sv_s_m, sv)) {
+        for beside_m in follows_beside(told) {
+            trial += 1;
+            let found_there = follows(told, ground, (sv_s_m, sv), beside_m);
+            let Some((back_m, cp, (sv_seen, cp_seen))) = found_there else { continue };
             let (sv_off, cp_off) = (zones_off(&told.sv.zones, sv_seen), zones_off(&told.cp.zones, cp_seen));
             // Zones are told to a step: its way through the turn is worth more than that.
-            let off = if sv_off.max(cp_off) <= 1 { 0 } else { sv_off + cp_off };
-            let (ground, cp_follows_m) = (Rc::clone(ground), Some(sv_s_m - back_m));
+            let fits = sv_off.max(cp_off) <= 1;
+            // Beside the ego's line where it does not come to the told zones on that.
+            if beside_m != 0.0 && !fits {
+                continue;
+            }
+            let off = if fits { 0 } else { sv_off + cp_off };
+            let (ground, cp_follows_m) = (Rc::clone(ground), Some((sv_s_m - back_m, beside_m)));
             found.push(Staging {
                 ground,
                 sv_s_m,
@@ -42,6 +49,9 @@ pub(super) fn bodies(told: &Told, ground: &Rc<Ground>) -> Vec<Staging> {
                 door: None,
                 cost: (off, trial),
             });
+            if fits {
+                break;
+            }
         }
         for (came, heading) in headings(told, sv.heading, behind) {
             for (sv_zone, cp_zone) in zone_pairs(told) {
@@ -52,7 +62,8 @@ pub(super) fn bodies(told: &Told, ground: &Rc<Ground>) -> Vec<Staging> {
                             continue;
                         };
                         let off = zones_off(&told.sv.zones, sv_seen) + zones_off(&told.cp.zones, cp_seen);
-                        let face_on = told.scrapes() && is_face_on(told, sv, cp);
+                        let beside = told.scrapes() || told.passes_narrow();
+                        let face_on = beside && is_face_on(told, sv, cp);
                         let along = (told.runs_into_rear() || told.backs_in_line()) && !is_face_on(told, sv, cp);
                         let round = math::wrap_angle(heading - came).abs();
                         let swings = told.goes_straight_behind() && round > SWINGS_RAD
@@ -79,6 +90,7 @@ pub(super) fn bodies(told: &Told, ground: &Rc<Ground>) -> Vec<Staging> {
                             (told.crosses_off_lanes(ground, cp), OFF_LANES),
                             (told.is_parked_otherwise(ground, cp), PARKED_OTHERWISE),
                             (told.swings_out(ground, heading - came), SWINGS_OUT),
+                            (told.stays_in_lane(ground, cp), STAYS_IN_LANE),
                         ];
                         let worse: u32 = worse.iter().filter(|(is, _)| *is).map(|(_, steps)| steps).sum();
                         let bends = lanes::bends(told, (ground, sv), cp, came);
@@ -116,6 +128,9 @@ const STRAIGHT_RAD: f64 = 0.15;
 /// Of an oncoming partner, that the ego, which turns, has not come to its lane.
 const BEFORE_LANE: u32 = 3;
 
+/// Of who changes lanes by a column alone, and runs into a rear corner, that it does not come to the line.
+const STAYS_IN_LANE: u32 = 2;
+
 /// Of who has a signal or a sign on the crossing road, that it does not come along the lanes that lead there.
 const OFF_LANES: u32 = 1;
 
@@ -147,14 +162,28 @@ const BESIDE_M: f64 = 2.4;
 const LATE: u32 = 1;
 const EARLY_RAD: f64 = 0.6;
 
+/// Who follows an ego through its turn does so on its line, or beside that, on the touched side first. [m]
+const FOLLOWS_BESIDE_M: [f64; 3] = [0.0, 0.6, 1.0];
+
+fn follows_beside(told: &Told) -> impl Iterator<Item = f64> + use<> {
+    let to_right = side_of(&told.sv.zones).map(|left| -left);
+    let beside_m = if to_right.is_some() { &FOLLOWS_BESIDE_M[..] } else { &FOLLOWS_BESIDE_M[..1] };
+    beside_m.iter().map(move |beside_m| to_right.unwrap_or(1.0) * beside_m)
+}
+
 /// Who comes behind an ego that turns comes by its way: how far behind it on that, where they touch, and the zones that then meet.
-fn follows(told: &Told, ground: &Ground, (sv_s_m, sv): (f64, Pose)) -> Option<(f64, Pose, (ContactZone, ContactZone))> {
+fn follows(
+    told: &Told,
+    ground: &Ground,
+    (sv_s_m, sv): (f64, Pose),
+    beside_m: f64,
+) -> Option<(f64, Pose, (ContactZone, ContactZone))> {
     if !told.turns_behind() {
         return None;
     }
     let ((sv_length, sv_width), (cp_length, cp_width)) = (size_of(&told.sv), size_of(&told.cp));
     let own = OrientedBox::new(sv, sv_length, sv_width);
-    let at = |back_m: f64| OrientedBox::new(ground.sv_pose(sv_s_m - back_m), cp_length, cp_width);
+    let at = |back_m: f64| OrientedBox::new(ground.pose(sv_s_m - back_m, beside_m), cp_length, cp_width);
     let (mut inside, mut outside) = (0.25 * cp_length, sv_length + cp_length);
     if outside > sv_s_m || !at(inside).overlaps(&own) || at(outside).overlaps(&own) {
         return None;
@@ -163,7 +192,7 @@ fn follows(told: &Told, ground: &Ground, (sv_s_m, sv): (f64, Pose)) -> Option<(f
         let middle = 0.5 * (inside + outside);
         if at(middle).overlaps(&own) { inside = middle } else { outside = middle }
     }
-    let (cp, touching) = (ground.sv_pose(sv_s_m - inside), at(inside - 0.01));
+    let (cp, touching) = (ground.pose(sv_s_m - inside, beside_m), at(inside - 0.01));
     let velocities = (velocity(&told.sv, sv.heading), velocity(&told.cp, cp.heading));
     let geometry = contact_geometry(&own, velocities.0, &touching, velocities.1);
     Some((inside, cp, (geometry.ego_zone, geometry.other_zone)))

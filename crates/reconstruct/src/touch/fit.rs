@@ -111,6 +111,13 @@ impl Told {
         self.origin == Origin::Behind && drives(&self.sv) && drives(&self.cp) && straight && self.sv_aside().is_some()
     }
 
+    /// Whether somebody narrow passes the ego from behind: it comes by beside that.
+    pub(super) fn passes_narrow(&self) -> bool {
+        let passes = self.cp.movement == Some(Movement::Passing) || self.rubs_by();
+        let narrow = size_of(&self.cp).1 < NARROW_M && self.comes_along_lanes();
+        narrow && passes && self.origin == Origin::Behind && side_of(&self.sv.zones).is_some()
+    }
+
     /// Whether they rub along each other: a flank takes part, and it is not the front of the one on the rear of the other.
     pub(super) fn scrapes(&self) -> bool {
         self.crash_type == CrashType::Lateral && side_of(&self.sv.zones).is_some()
@@ -128,6 +135,17 @@ impl Told {
         self.comes_along_kerb() && self.passes_from_behind() && ground.stands_m > 0.0 && turned > SWINGS_OUT_RAD
     }
 
+    /// Whether a partner of which a column alone tells that it changed lanes, and that runs into a rear corner, is yet well within the ego's
+    /// lane.
+    pub(super) fn stays_in_lane(&self, ground: &Ground, cp: Pose) -> bool {
+        let changes = matches!(self.cp.movement, Some(Movement::ChangingLanes)) && self.cp.aside.is_none();
+        let told =
+            self.cp.merges_in || self.cp.changed_lanes || self.cp.passes || self.cp.acts.iter().any(Doing::goes_aside);
+        let drives = self.cp.state == ContactState::Moving && self.origin == Origin::Behind;
+        let corner = side_of(&self.sv.zones).is_some() && self.sv.turning == Turning::No;
+        changes && drives && !told && corner && ground.beside(cp.position).1.abs() < 0.5 * LANE_M - TO_LINE_M
+    }
+
     /// Whether a partner that is told to stand beside the lanes would stand in one, or askew.
     pub(super) fn is_parked_otherwise(&self, ground: &Ground, cp: Pose) -> bool {
         let askew = math::sin(cp.heading).abs() > ASKEW && !self.diagonal;
@@ -137,6 +155,12 @@ impl Told {
         self.stands_beside(false) && (askew || ground.is_in_lanes(cp, 0.0, 0.0))
     }
 }
+
+/// Who is narrower gets by beside somebody. [m]
+const NARROW_M: f64 = 1.2;
+
+/// Who is at the line has its middle no farther from that. [m]
+const TO_LINE_M: f64 = 0.3;
 
 /// Who has turned out of the lane by more swings out. [rad]
 const SWINGS_OUT_RAD: f64 = 0.02;

@@ -74,6 +74,9 @@ pub(super) fn headings(told: &Told, sv_heading: f64, behind: f64) -> Vec<(f64, f
         return coming_across(told).into_iter().map(math::wrap_angle).map(|heading| (heading, heading)).collect();
     }
     let along_kerb = matches!(told.origin, Origin::Parked { .. }) && !is_on_foot(told.cp.kind);
+    if told.backs_from_behind() {
+        list.extend(REAR_TO_REAR_DEG.map(degrees).map(|heading| (heading, heading)));
+    }
     match told.origin {
         Origin::Behind | Origin::Ahead | Origin::Beside { .. } => {
             // Along the road, or as the ego has turned.
@@ -182,6 +185,9 @@ pub(super) fn headings(told: &Told, sv_heading: f64, behind: f64) -> Vec<(f64, f
     }
     list.into_iter().map(|(came, at)| (math::wrap_angle(came), math::wrap_angle(at))).collect()
 }
+
+/// Headings of who backs towards the ego from behind: its rear comes first. [deg]
+const REAR_TO_REAR_DEG: [f64; 5] = [180.0, 165.0, -165.0, 150.0, -150.0];
 
 /// Angles of who backs into a space at the kerb, to the road; its rear points to the kerb. [deg]
 const BACKS_IN_DEG: [f64; 7] = [25.0, 30.0, 20.0, 35.0, 12.0, 5.0, 0.0];

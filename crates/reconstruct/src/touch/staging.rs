@@ -18,8 +18,8 @@ pub(crate) struct Staging {
     pub(crate) cp: Pose,
     /// Heading of the partner some seconds before, of who does not reverse the way it moves. [rad]
     pub(crate) cp_came: f64,
-    /// Along the ego's way, where the partner is at the contact that comes by it. [m]
-    pub(crate) cp_follows_m: Option<f64>,
+    /// Along the ego's way and to the right of it, where the partner is at the contact that comes by it. [m]
+    pub(crate) cp_follows_m: Option<(f64, f64)>,
     /// The last part of the partner's way, of who turns as it touches.
     pub(crate) bend: Option<Bend>,
     /// The door that takes part.

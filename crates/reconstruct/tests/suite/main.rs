@@ -16,6 +16,7 @@ mod moves;
 mod near;
 mod near_deeds;
 mod others;
+mod own_way;
 mod places;
 mod places_of_others;
 mod roadside;
