@@ -123,7 +123,7 @@ impl Told {
     /// Whether the partner changes lanes behind the ego, and nobody tells to which side.
     pub(crate) fn may_come_from_either(&self) -> bool {
         let changes = matches!(self.cp.movement, Some(Movement::ChangingLanes | Movement::Merging));
-        self.origin == Origin::Behind && changes && self.cp.aside.is_none() && self.sv.turning == Turning::No
+        self.origin == Origin::Behind && changes && self.cp.aside.is_none()
     }
 
     /// Whether the partner turns out of a crossing road into the ego's, against the ego's way.
