@@ -66,7 +66,9 @@ fn told_with(reading: &Reading<'_>, actor: Actor, at: usize) -> Option<usize> {
     // "During the left turn, a van came": that had turned of which a turn is told.
     let known = is_known(reading, at);
     let (number, frame) = before.or_else(|| frames().find(|(_, frame)| frame.first > at && !known))?;
-    let of = frame.who == Some(actor) || frame.passive && frame.object == Some(actor);
+    // "It was hit by a van during its turn": its own.
+    let subject = if frame.passive { frame.object.or(frame.who) } else { frame.who };
+    let of = subject == Some(actor);
     // "while merging in a slip lane" is told with its own verb.
     let told = !matches!(frame.sense, Sense::Headline | Sense::Act(Act::LaneChange)) && !reading.is_after(number);
     (of && told).then_some(number)
