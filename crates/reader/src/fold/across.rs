@@ -3,7 +3,7 @@
 use super::Reading;
 use crate::chunk::Joint;
 use crate::frame::Frame;
-use crate::lexicon::{Form, Progress};
+use crate::lexicon::{Form, Progress, Sense};
 use recrash_model::account::{Act, ActFact, Party};
 
 /// Tells each act of the two behind which one of the other's it came, where the words say so.
@@ -105,16 +105,23 @@ fn is_inner(joint: &Joint) -> bool {
 
 /// Whether a frame tells something that happened, and not how things were: "stopped", "began to turn".
 fn happens(reading: &Reading<'_>, frame: &Frame) -> bool {
-    let event = frame.act().is_some_and(|act| !matches!(act, Act::Follow | Act::Hold | Act::Pushed));
+    // Of giving way only what counts as slowing is an act.
+    let event = frame.sense == Sense::Yield
+        || frame.act().is_some_and(|act| !matches!(act, Act::Follow | Act::Hold | Act::Pushed));
     let told = matches!(frame.form, Form::Past | Form::Present) || frame.progress == Progress::Tried;
     event && (told || is_begun(reading, frame)) && !frame.state && frame.happened()
 }
 
 /// "began to turn", "started passing".
 pub(super) fn begins(reading: &Reading<'_>, frame: &Frame) -> bool {
+    frame.act().is_some() && is_behind_begin(reading, frame)
+}
+
+/// "began to ...", "started ...": whatever follows.
+pub(super) fn is_behind_begin(reading: &Reading<'_>, frame: &Frame) -> bool {
     let from = reading.story.sentences[frame.sentence].first.max(frame.first.saturating_sub(3));
     let before = &reading.story.tokens[from..=frame.first];
-    frame.act().is_some() && before.iter().any(|token| ["beg", "start"].iter().any(|stem| token.text.starts_with(stem)))
+    before.iter().any(|token| ["beg", "start"].iter().any(|stem| token.text.starts_with(stem)))
 }
 
 /// "began to turn", "proceeded to make a turn", "started reversing".

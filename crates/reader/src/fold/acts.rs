@@ -1,8 +1,9 @@
 //! What somebody did, in order, each act with its side.
 
 use super::Reading;
-use super::across::begins;
-use super::entry;
+use super::across::{begins, is_behind_begin};
+use super::speeds::is_of_last_contact;
+use super::{entry, flashback, nominal};
 use crate::chunk::{Joint, Spot};
 use crate::frame::{Frame, sided};
 use crate::lexicon::{Form, Lexicon, Progress, Relation, Sense};
@@ -14,7 +15,9 @@ use recrash_model::template::Movement;
 /// What somebody did, in order; the same act told twice in a row once.
 pub(super) fn acts(reading: &Reading<'_>, actor: Actor) -> Vec<ActFact> {
     let mut all: Vec<ActFact> = Vec::new();
-    for (number, frame) in reading.story.frames.iter().enumerate() {
+    let (order, at_crash) = flashback::in_order(reading, actor);
+    for number in order {
+        let frame = &reading.story.frames[number];
         let thrown = reading.contacts.earlier.contains(&number)
             && frame.object == Some(actor)
             && Some(actor) == reading.contacts.partner;
@@ -27,6 +30,10 @@ pub(super) fn acts(reading: &Reading<'_>, actor: Actor) -> Vec<ActFact> {
             all.iter_mut().filter(|fact| Some(fact.act) == frame.act() && !fact.after_contact).for_each(leave_off);
         }
         let Some(act) = act_of(reading, number, frame, pushed) else { continue };
+        let last = at_crash.filter(|_| flashback::is_state_at_crash(reading, number) && actor == SUBJECT);
+        if last.is_some() && all.iter().rfind(|fact| !fact.after_contact).is_some_and(stands) {
+            continue;
+        }
         let side =
             side_of(reading, actor, frame, act).or_else(|| back_to_the_middle(reading, frame, act, &all)).or_else(
                 || all.last().and_then(|out| out.side).filter(|_| act == Act::Pass && went_by(reading, number, frame)),
@@ -35,7 +42,7 @@ pub(super) fn acts(reading: &Reading<'_>, actor: Actor) -> Vec<ActFact> {
         let fact = ActFact {
             act,
             side,
-            step: number as u32,
+            step: last.unwrap_or(number) as u32,
             after_contact,
             begun: frame.progress == Progress::Tried && !went_by(reading, number, frame)
                 || begins_to_pass(reading, actor, frame, act, side),
@@ -83,6 +90,7 @@ pub(super) fn acts(reading: &Reading<'_>, actor: Actor) -> Vec<ActFact> {
         with_contact(reading, actor, &mut all);
     }
     told_ahead(reading, &mut all);
+    nominal::add_turn(reading, actor, &mut all);
     all
 }
 
@@ -258,7 +266,17 @@ fn is_done(reading: &Reading<'_>, frame: &Frame) -> bool {
     let first = word(frame.first);
     // "A van that had made the turn before it".
     let had = (1..3).any(|back| frame.first.checked_sub(back).is_some_and(|at| word(at) == "had"));
-    let turned = had && matches!(frame.act(), Some(Act::Turn | Act::UTurn)) && frame.progress == Progress::Real;
+    // "It had just crossed the intersection".
+    let through = || {
+        (frame.first..frame.end)
+            .any(|at| ["cross", "through", "travers", "clear"].iter().any(|stem| word(at).starts_with(stem)))
+    };
+    let passed = match frame.act() {
+        Some(Act::Turn | Act::UTurn) => true,
+        Some(Act::Enter | Act::Cross) => through(),
+        _ => false,
+    };
+    let turned = had && passed && frame.progress == Progress::Real;
     frame.joint == Some(Joint::After)
         || turned
         || ["complet", "finish", "exit"].iter().any(|start| first.starts_with(start))
@@ -281,6 +299,10 @@ fn manner(reading: &Reading<'_>, number: usize) -> Option<Manner> {
     words.find_map(|at| match word(at) {
         // "touched the slowly moving van".
         "slowly" if !frame.is_contact() || at < frame.first => Some(Manner::Slow),
+        // "moved forward slightly".
+        "slightly" if at > frame.first && tokens[frame.first..at].iter().any(|token| token.text == "forward") => {
+            Some(Manner::Slow)
+        }
         "speeding" if at >= frame.first => Some(Manner::Fast),
         _ if at > frame.first && speed(at, &SLOW) => Some(Manner::Slow),
         _ if at > frame.first && speed(at, &FAST) => Some(Manner::Fast),
@@ -333,7 +355,7 @@ fn act_of(reading: &Reading<'_>, number: usize, frame: &Frame, pushed: bool) -> 
     if act == Act::Fall && frame.who == Some(SUBJECT) && frame.with.is_some() && reading.doer(frame) == Some(SUBJECT) {
         return None;
     }
-    if act == Act::Follow && in_headline(reading, frame) {
+    if act == Act::Follow && (in_headline(reading, frame) || is_of_last_contact(reading, frame.sentence)) {
         return None;
     }
     // "proceeded forward out of a stall".
@@ -342,6 +364,9 @@ fn act_of(reading: &Reading<'_>, number: usize, frame: &Frame, pushed: bool) -> 
     // "exited the intersection": of others it is where they had been.
     let exits = act == Act::Enter && reading.story.tokens[frame.first].text.starts_with("exit");
     if exits && frame.who != Some(SUBJECT) {
+        return None;
+    }
+    if act == Act::Slow && avoids(reading, frame) && matches!(moved(), Some(Act::Hold | Act::Stop)) {
         return None;
     }
     Some(match act {
@@ -361,6 +386,11 @@ fn act_of(reading: &Reading<'_>, number: usize, frame: &Frame, pushed: bool) -> 
         Act::Pass if passes_nobody(reading, frame) => Act::Follow,
         act => act,
     })
+}
+
+/// "attempted to avoid a collision": who stood could not brake.
+pub(super) fn avoids(reading: &Reading<'_>, frame: &Frame) -> bool {
+    reading.story.tokens[frame.first..frame.end].iter().any(|token| token.text.starts_with("avoid"))
 }
 
 /// "It merged into the right lane to pass a van, and began to merge back": it had gone by the van then.
@@ -420,8 +450,9 @@ pub(super) fn gains_speed(reading: &Reading<'_>, number: usize, frame: &Frame) -
 
 /// "It turned, and yielded to a man": who gives way to somebody and had not slowed since it drove has slowed for that.
 fn yields_in_motion(reading: &Reading<'_>, number: usize, frame: &Frame) -> bool {
-    let to =
-        frame.object.filter(|to| frame.sense == Sense::Yield && frame.form != Form::Base && Some(*to) != frame.who);
+    // "began to yield to it"; "failed to yield" and "waited to yield" are none.
+    let does = frame.form != Form::Base || frame.happened() && is_behind_begin(reading, frame);
+    let to = frame.object.filter(|to| frame.sense == Sense::Yield && does && Some(*to) != frame.who);
     let slows = |act: Option<Act>| matches!(act, Some(Act::Stop | Act::Hold | Act::Slow | Act::Park | Act::PullOver));
     // "slowing and moving at 2 mph, yielding to it": told with the act itself.
     let same = |other: &&Frame| other.sentence == frame.sentence && other.who == frame.who && other.happened();
@@ -525,6 +556,9 @@ fn merely_caused(reading: &Reading<'_>, number: usize, frame: &Frame) -> bool {
 /// What somebody did last before a frame, of the frames that are wanted.
 fn last_act(reading: &Reading<'_>, number: usize, frame: &Frame, wanted: impl Fn(&Frame) -> bool) -> Option<Act> {
     let before = reading.before(frame.who?).take_while(|(other, _)| *other < number);
+    // What the headline tells of the crash came last.
+    let before =
+        before.filter(|(other, frame)| frame.who != Some(SUBJECT) || !flashback::is_state_at_crash(reading, *other));
     before.filter(|(_, frame)| frame.happened() && wanted(frame)).filter_map(|(_, frame)| frame.act()).last()
 }
 
@@ -544,7 +578,10 @@ fn goes_on_from_a_stand(reading: &Reading<'_>, number: usize, frame: &Frame, wor
         Some(Act::Reverse) => forward,
         act => matches!(act, Some(Act::Hold | Act::Stop)),
     };
-    !goes_on && frame.sense != Sense::Approach && stood(last_act(reading, number, frame, |frame| !frame.aside))
+    // "The stationary AV was in autonomous mode. It moved forward".
+    let last = last_act(reading, number, frame, |frame| !frame.aside);
+    let last = last.or_else(|| last_act(reading, number, frame, |_| true).filter(|_| frame.who == Some(SUBJECT)));
+    !goes_on && frame.sense != Sense::Approach && stood(last)
 }
 
 /// "Once the light turned green, it began to proceed, and a car behind it proceeded forward": so did that.

@@ -1,13 +1,11 @@
-//! Signals and signs in front of somebody, and speeds, as the words tell them.
+//! Signals and signs in front of somebody, as the words tell them.
 
 use super::Reading;
 use super::acts::not_done;
 use crate::frame::Frame;
 use crate::lexicon::{Form, Sense};
-use crate::token::{Token, TokenKind};
 use crate::world::{Actor, SUBJECT};
-use recrash_model::account::{Act, Control, ControlDevice, Fact, Obeyed, SignalState, Speed, SpeedMeaning};
-use recrash_model::record::MPS_PER_MPH;
+use recrash_model::account::{Act, Control, ControlDevice, Fact, Obeyed, SignalState};
 
 /// Signals and signs in front of somebody.
 pub(super) fn controls(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<Control>> {
@@ -84,7 +82,7 @@ pub(super) fn controls(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<Control>
 fn named(words: &[&str]) -> Option<(ControlDevice, Option<SignalState>, usize)> {
     Some(match words {
         // "a right-on-red".
-        ["right" | "left", "on", "red", ..] | ["right" | "left", "turn", "on", "red", ..] => {
+        ["right" | "left" | "turn", "on", "red", ..] | ["right" | "left", "turn", "on", "red", ..] => {
             (ControlDevice::Signal, Some(SignalState::Red), 3)
         }
         ["red", "light" | "signal" | "traffic", ..] | ["red", "left" | "right", "turn", ..] => {
@@ -138,90 +136,4 @@ fn was_green(reading: &Reading<'_>, frame: &Frame, before: &[Fact<Control>]) -> 
     let words = &reading.story.tokens[frame.first..frame.end];
     let red = before.iter().any(|control| control.value.state == Some(SignalState::Red));
     !red && words.iter().any(|token| matches!(token.text.as_str(), "is" | "was" | "were"))
-}
-
-/// "slowed to about 6 mph", "accelerated to 5 mph": the words before the number, where nothing is told of a later speed. "Up to 10 mph" is
-/// the most that it reached.
-fn slowed_to(before: &[Token], frame: &Frame) -> bool {
-    if before.windows(2).any(|pair| pair[0].text == "up" && pair[1].text == "to") {
-        return false;
-    }
-    let to = before.iter().rev().find(|token| {
-        !matches!(token.text.as_str(), "about" | "approximately" | "around" | "roughly" | "only" | "just" | "~")
-    });
-    matches!(frame.act(), Some(Act::Slow | Act::Accelerate))
-        && frame.happened()
-        && to.is_some_and(|token| token.text == "to")
-}
-
-/// "at the time of impact it was doing 30 mph", "was doing 30 mph at the moment of contact", "the crash signal was logged at 30 mph": no
-/// other speed stands in between.
-fn at_impact(tokens: &[Token], (first, end): (usize, usize), at: usize) -> bool {
-    let word = |at: usize| tokens[at].text.as_str();
-    let speed = |at: &usize| word(*at).ends_with("mph");
-    let crash = |at: usize| matches!(word(at), "impact" | "crash" | "collision" | "contact");
-    let mark = |at: usize| {
-        let signal = at > first && crash(at - 1) && matches!(word(at), "signal" | "speed");
-        let time = |at: usize| matches!(word(at), "time" | "moment" | "instant" | "point");
-        signal || crash(at) && (first.max(at.saturating_sub(3))..at).any(time)
-    };
-    let before = || (first..at).rev().take_while(|at| !speed(at)).any(mark);
-    let behind = || (at + 2..end.min(at + 9)).take_while(|at| !speed(at)).any(mark);
-    let earlier = (first..end).any(|at| matches!(word(at), "before" | "prior"));
-    !earlier && (before() || behind())
-}
-
-/// Whether somebody braked or stopped behind this frame, before the contact.
-fn slows_later(reading: &Reading<'_>, actor: Actor, number: usize) -> bool {
-    reading.before(actor).any(|(later, frame)| {
-        later > number && frame.happened() && matches!(frame.act(), Some(Act::Slow | Act::Stop | Act::Hold))
-    })
-}
-
-/// Speeds that the words tell of somebody.
-pub(super) fn speeds(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<Speed>> {
-    let tokens = &reading.story.tokens;
-    let mut all = Vec::new();
-    for (at, token) in tokens.iter().enumerate() {
-        let joined = token.text.strip_suffix("mph").and_then(|number| number.parse::<f64>().ok());
-        let unit = tokens.get(at + 1).map_or("", |next| next.text.as_str());
-        // "for 2 miles" is no speed.
-        let an_hour =
-            || tokens.get(at + 2).is_some_and(|next| matches!(next.text.as_str(), "per" | "an" | "hour" | "/"));
-        let apart = token
-            .text
-            .parse::<f64>()
-            .ok()
-            .filter(|_| token.kind == TokenKind::Number && (unit == "mph" || unit == "miles" && an_hour()));
-        let Some(mph) = joined.or(apart).filter(|mph| *mph < 200.0) else { continue };
-        let last_frame = reading
-            .story
-            .frames
-            .iter()
-            .enumerate()
-            .rev()
-            .find(|(_, frame)| frame.first < at && !frame.aside && frame.who.is_some());
-        let Some((number, frame)) = last_frame else { continue };
-        let sentence = reading.story.sentences[frame.sentence];
-        let impact = at_impact(tokens, (sentence.first, sentence.end), at);
-        let in_time = impact || !reading.is_after(number);
-        if frame.who != Some(actor) || !(sentence.first..sentence.end).contains(&at) || !in_time {
-            continue;
-        }
-        let near: Vec<&str> =
-            tokens[at.saturating_sub(4)..tokens.len().min(at + 5)].iter().map(|token| token.text.as_str()).collect();
-        let limit = near.iter().any(|word| matches!(*word, "zone" | "limit" | "posted"));
-        let meaning = if limit {
-            SpeedMeaning::Posted
-        } else if frame.is_contact()
-            || impact
-            || slowed_to(&tokens[at.saturating_sub(4)..at], frame) && !slows_later(reading, actor, number)
-        {
-            SpeedMeaning::Impact
-        } else {
-            SpeedMeaning::Approach
-        };
-        all.push(reading.told(Speed { mps: mph * MPS_PER_MPH, meaning }, at, tokens.len().min(at + 2)));
-    }
-    all
 }

@@ -1,10 +1,11 @@
 //! Reports that tell the crash first, and then how it came to it.
 
+use super::Reading;
 use super::contact::Contacts;
 use crate::frame::{Frame, Story};
 use crate::lexicon::{Form, Sense};
 use crate::token::Token;
-use crate::world::SUBJECT;
+use crate::world::{Actor, SUBJECT};
 use recrash_model::account::Act;
 use std::ops::Range;
 
@@ -34,6 +35,48 @@ pub(super) fn told_back(story: &Story, contacts: &Contacts) -> Range<usize> {
     let Some(begin) = begins else { return 0..0 };
     let end = (begin..story.sentences.len()).find(|&sentence| is_aftermath(story, sentence));
     begin..end.unwrap_or(story.sentences.len())
+}
+
+/// The frames in the order of what happened, of somebody: the state in which the headline has the subject vehicle comes last, where the
+/// story is told again behind it; and the frame of the contact to which that belongs.
+pub(super) fn in_order(reading: &Reading<'_>, actor: Actor) -> (Vec<usize>, Option<usize>) {
+    let all = 0..reading.story.frames.len();
+    let last = |number: &usize| actor == SUBJECT && is_state_at_crash(reading, *number);
+    let touches = |number: &usize| reading.story.frames[*number].is_contact() && !reading.is_after(*number);
+    let (at_crash, mut order): (Vec<usize>, Vec<usize>) = all.clone().partition(last);
+    let contact = all.rev().find(touches).filter(|_| !at_crash.is_empty());
+    // What came of it stays behind.
+    let after = order.iter().position(|number| reading.is_after(*number)).unwrap_or(order.len());
+    order.splice(after..after, at_crash);
+    (order, contact)
+}
+
+/// "The AV was stopped when it was rear-ended. The AV was traveling north and slowing for a light, and a van struck it": a state at the
+/// crash, and not the first that it did.
+pub(super) fn is_state_at_crash(reading: &Reading<'_>, number: usize) -> bool {
+    let story = &reading.story;
+    let frame = &story.frames[number];
+    let touches = |other: &Frame| {
+        let pair = [other.who, other.object];
+        other.sentence == frame.sentence && other.is_contact() && pair.contains(&Some(SUBJECT))
+    };
+    let stands = frame.who == Some(SUBJECT) && frame.act() == Some(Act::Hold) && frame.happened();
+    if !stands || reading.is_after(number) || !story.frames.iter().any(touches) {
+        return false;
+    }
+    let tells = |other: &Frame| other.act().is_some() || other.sense == Sense::Yield;
+    let mut behind = reading.before(SUBJECT).filter(|(_, other)| {
+        other.sentence > frame.sentence && !other.aside && !other.described && other.happened() && tells(other)
+    });
+    let was = |other: &Frame| {
+        let from = story.sentences[other.sentence].first.max(other.first.saturating_sub(3));
+        story.tokens[from..=other.first].iter().any(|token| token.text == "was")
+    };
+    // Who was about to leave its place had stood there first.
+    let leaves = |other: &Frame| {
+        matches!(other.act(), Some(Act::Hold | Act::SetOff | Act::PullOut | Act::Reverse | Act::Accelerate))
+    };
+    behind.next().is_some_and(|(_, other)| other.form == Form::Ing && was(other) && !leaves(other))
 }
 
 /// "A van struck it. The van initially waited. ... It set off and drove into it": the sentences from the one that says how it began up to

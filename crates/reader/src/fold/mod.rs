@@ -9,6 +9,7 @@ mod entry;
 mod flashback;
 mod movement;
 mod nobody;
+mod nominal;
 mod open;
 mod order;
 mod origin;
@@ -17,6 +18,7 @@ mod picture;
 mod place;
 mod role;
 mod scenario;
+mod speeds;
 mod standing;
 mod state;
 mod striker;
@@ -226,7 +228,26 @@ impl Reading<'_> {
             |sentence: usize| self.story.frames.iter().any(|frame| frame.sentence == sentence && frame.is_contact());
         let mut back = (0..frame.sentence).rev().take_while(|&before| names(before + 1) == 0 && !touched(before + 1));
         let begun = back.any(|sentence| self.looks_back_from_crash(sentence) && names(sentence) == 1);
-        self.looks_back_from_crash(frame.sentence) || begun && frame.act() != Some(Act::Leave)
+        self.looks_back_from_crash(frame.sentence)
+            || self.ends_before_crash(frame)
+            || begun && frame.act() != Some(Act::Leave)
+    }
+
+    /// "It hit the rear of a van. It braked hard and was coming to a stop before making contact": how it came to it, told right behind it.
+    fn ends_before_crash(&self, frame: &Frame) -> bool {
+        let does =
+            matches!(frame.act(), Some(Act::Slow | Act::Stop | Act::Swerve | Act::Drift | Act::LaneChange | Act::Turn));
+        let next = self.contacts.first.is_some_and(|first| self.story.frames[first].sentence + 1 == frame.sentence);
+        let range = self.story.sentences[frame.sentence];
+        let word = |at: usize| self.story.tokens.get(at).map_or("", |token| token.text.as_str());
+        let more = (range.first..range.end).any(|at| matches!(word(at), "second" | "another" | "again" | "further"));
+        let before =
+            (frame.end..range.end).filter(|&at| word(at) == "before" || (word(at), word(at + 1)) == ("prior", "to"));
+        let crash = |at: usize| {
+            let mut behind = (at + 1..range.end.min(at + 5)).map(word);
+            behind.any(|word| matches!(word, "contact" | "impact" | "collision" | "colliding" | "hitting" | "striking"))
+        };
+        does && next && !more && before.into_iter().any(crash)
     }
 
     /// Whether a sentence begins with "prior to the collision".
@@ -428,8 +449,9 @@ fn own_kind(record: &CrashRecord) -> Option<Kind> {
     if ["sienna", "pacifica"].iter().any(|model| vehicle.contains(model)) {
         return Some(Kind::Minivan);
     }
-    let shuttle = ["navya", "olli", "easymile", "e-palette", "autonom", "ohmio"];
-    shuttle.iter().any(|make| vehicle.contains(make)).then_some(Kind::Bus)
+    // Whole words: "Autonomous" is no Autonom.
+    let shuttle = ["navya", "olli", "easymile", "palette", "autonom", "ohmio"];
+    vehicle.split(|c: char| !c.is_alphanumeric()).any(|word| shuttle.contains(&word)).then_some(Kind::Bus)
 }
 
 /// The first word of the name of the company that reports, written small.

@@ -16,7 +16,8 @@ pub(crate) fn order(account: &Account) -> Option<Fact<FirstMover>> {
     let (value, name) = match by_standing(account, state) {
         Some(said) => said,
         None => {
-            by_type(account, partner, state, told(&account.crash_type)?).unwrap_or_else(|| by_zones(account, partner))
+            let crash_type = told(&account.crash_type)?;
+            by_type(account, partner, state, crash_type).or_else(|| by_zones(account, partner))?
         }
     };
     Some(Fact::by_rule(value, name))
@@ -92,7 +93,7 @@ fn backing(account: &Account, partner: &Party, state: ContactState) -> FirstMove
 }
 
 /// Whose front touches comes later than whose flank is touched.
-fn by_zones(account: &Account, partner: &Party) -> (FirstMover, &'static str) {
+fn by_zones(account: &Account, partner: &Party) -> Said {
     let front = |party: &Party| has_zone(party, |zone| zone.is_front());
     // A side that is named with its front corner is a side.
     let side = |party: &Party| {
@@ -102,24 +103,38 @@ fn by_zones(account: &Account, partner: &Party) -> (FirstMover, &'static str) {
     };
     let under = |party: &Party| party.zones.iter().all(|zone| matches!(zone.value, Z::Bottom | Z::Top));
     let flank = |party: &Party| !under(party) && (side(party) || !has_zone(party, |zone| zone.is_front()));
-    if partner.zones.is_empty() && !account.sv.zones.is_empty() {
-        let value = if flank(&account.sv) { FirstMover::Sv } else { FirstMover::Cp };
-        return (value, "whose flank is touched is there first");
-    }
     let striker = told(&account.striker);
+    if partner.zones.is_empty() && !account.sv.zones.is_empty() {
+        // By which part it struck a corner nobody tells.
+        if !flank(&account.sv) && striker == Some(Striker::Cp) && on_corner(&account.sv) && !comes_before(partner) {
+            return None;
+        }
+        let value = if flank(&account.sv) { FirstMover::Sv } else { FirstMover::Cp };
+        return Some((value, "whose flank is touched is there first"));
+    }
     let plain_side = |party: &Party| {
         !party.zones.is_empty() && party.zones.iter().all(|zone| matches!(zone.value, Z::Left | Z::Right))
     };
     let thrown = told(&account.crash_type) == Some(CrashType::Secondary);
     let drives = matches!(group(account), Some(KindGroup::Car | KindGroup::Truck));
     if plain_side(&account.sv) && plain_side(partner) && !thrown && drives {
-        return (FirstMover::Both, "side on side they converge");
+        return Some((FirstMover::Both, "side on side they converge"));
     }
-    match (front(&account.sv), flank(&account.sv), front(partner), flank(partner)) {
+    Some(match (front(&account.sv), flank(&account.sv), front(partner), flank(partner)) {
         (_, true, _, true) if striker == Some(Striker::Cp) => (FirstMover::Sv, "the other came to its flank"),
         (_, true, _, true) if striker == Some(Striker::Sv) => (FirstMover::Cp, "it came to the other's flank"),
         (_, true, true, _) => (FirstMover::Sv, "whose flank is touched is there first"),
         (true, _, _, true) => (FirstMover::Cp, "whose flank is touched is there first"),
         _ => (FirstMover::Both, "at about the same time"),
-    }
+    })
+}
+
+/// Whether a corner or a side of somebody was touched, and not the front alone.
+fn on_corner(party: &Party) -> bool {
+    party.zones.iter().any(|zone| !matches!(zone.value, Z::Front | Z::Bottom | Z::Top))
+}
+
+/// Whether somebody came before the other one, where that meets its flank: it cut in, turned or pulled out there.
+fn comes_before(party: &Party) -> bool {
+    [Act::LaneChange, Act::Drift, Act::Swerve, Act::Turn, Act::UTurn, Act::PullOut].iter().any(|act| party.did(*act))
 }

@@ -2,8 +2,9 @@
 
 use super::Reading;
 use super::acts::acts;
-use super::controls::{controls, speeds};
+use super::controls::controls;
 use super::open::is_any_truck;
+use super::speeds::speeds;
 use super::standing::{reasons, state};
 use super::state::{partner_state, sv_speed, sv_state};
 use super::touched::{by_trailer, zones};

@@ -125,7 +125,9 @@ fn is_after(reading: &Reading<'_>, token: usize) -> bool {
 fn lanes(reading: &Reading<'_>, place: &mut Place, first: usize, end: usize) {
     let tokens = &reading.story.tokens;
     for at in first..end {
-        let Some(number) = number(&tokens[at].text) else { continue };
+        // "in the single lane".
+        let single = (tokens[at].text == "single").then_some(1);
+        let Some(number) = number(&tokens[at].text).or(single) else { continue };
         let next: Vec<&str> = tokens[at + 1..end.min(at + 5)].iter().map(|token| token.text.as_str()).collect();
         let lanes = next.iter().position(|word| matches!(*word, "lanes" | "lane"));
         let plain = lanes.is_some_and(|lanes| {
@@ -143,7 +145,10 @@ fn lanes(reading: &Reading<'_>, place: &mut Place, first: usize, end: usize) {
                 )
             })
         });
-        let of = at > first && matches!(tokens[at - 1].text.as_str(), "of" | "a" | "with" | "has" | "the");
+        // "a one-way, one-lane street".
+        let word =
+            |back: usize| at.checked_sub(back).filter(|at| *at >= first).map_or("", |at| tokens[at].text.as_str());
+        let of = matches!(word(1), "of" | "a" | "with" | "has" | "the") || (word(2), word(1)) == ("way", ",");
         if plain && of && place.lanes.is_none() && (1..=8).contains(&number) {
             place.lanes = Some(reading.told(number, at, at + 2));
         }

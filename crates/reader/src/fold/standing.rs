@@ -1,7 +1,8 @@
 //! State at the contact as the words tell it, how long somebody had stood, and why.
 
-use super::Reading;
-use super::acts::{gains_speed, in_headline};
+use super::acts::{avoids, gains_speed, in_headline};
+use super::speeds::is_of_last_contact;
+use super::{Reading, flashback, nominal};
 use crate::frame::Frame;
 use crate::lexicon::{Form, Lexicon, Progress, Relation, Sense};
 use crate::token::Token;
@@ -27,14 +28,21 @@ struct Told {
 pub(super) fn state(reading: &Reading<'_>, actor: Actor) -> (Option<Fact<ContactState>>, Option<Fact<Standing>>) {
     let contact = reading.contacts.first.map(|contact| &reading.story.frames[contact]);
     let sentence = contact.map(|frame| frame.sentence);
-    let mut told = Told::default();
-    for (number, frame) in reading.story.frames.iter().enumerate() {
+    // Who stood in its turn came there.
+    let mut told = Told { moved: nominal::is_in_turn(reading, actor), ..Told::default() };
+    for number in flashback::in_order(reading, actor).0 {
+        let frame = &reading.story.frames[number];
         if reading.doer(frame) != Some(actor) || !frame.happened() || reading.is_after(number) {
             continue;
         }
         let Some(act) = frame.act().filter(|act| !matches!(act, Act::OpenDoor | Act::Leave)) else { continue };
         let aside = frame.aside && Some(frame.sentence) != sentence && told.state.is_some();
-        if aside || act == Act::Follow && in_headline(reading, frame) {
+        // "It was traveling at 0 mph", told behind the contact, is no act.
+        let speed = || act == Act::Follow && is_of_last_contact(reading, frame.sentence);
+        if aside || act == Act::Follow && in_headline(reading, frame) || speed() {
+            continue;
+        }
+        if act == Act::Slow && told.stands() && avoids(reading, frame) {
             continue;
         }
         let act = if gains_speed(reading, number, frame) { Act::Accelerate } else { act };

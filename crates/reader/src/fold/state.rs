@@ -1,7 +1,9 @@
 //! State of the subject vehicle at the contact: the words held against the column speed and the movement column.
 
-use super::Reading;
 use super::standing::reasons;
+use super::{Reading, nominal};
+use crate::frame::Frame;
+use crate::lexicon::{Form, Sense};
 use crate::world::SUBJECT;
 use recrash_model::account::{
     Account, Act, ContactState, Fact, KindGroup, Party, SpeedMeaning, StandReason, Standing, told,
@@ -21,6 +23,7 @@ pub(super) fn sv_state(reading: &Reading<'_>, account: &mut Account) {
     let rolls = rolls && !(column == Some(Movement::Stopped) && was_told_before(account));
     let drives = record.sv_speed_mps.is_some_and(|speed| speed >= DRIVES_MPS);
     let zero = record.sv_speed_mps.is_some_and(|speed| speed < 0.1);
+    let yields = yields_last(reading) && record.sv_speed_mps.is_none() && !told_speed(account, |mps| mps > 0.0);
     let value = match (words, column) {
         // In the lane, for passengers.
         (Some(ContactState::Parked), Some(Movement::Stopped))
@@ -28,6 +31,8 @@ pub(super) fn sv_state(reading: &Reading<'_>, account: &mut Account) {
         {
             Some(ContactState::Stopped)
         }
+        // "came to a stop to yield to a truck": in its lane, whatever the column calls it.
+        (Some(ContactState::Stopped), Some(Movement::Parked)) if waits_in_traffic(account) => None,
         (Some(ContactState::Stopped), Some(Movement::Parked)) => Some(ContactState::Parked),
         (None, Some(Movement::Parked)) => Some(ContactState::Parked),
         (None, Some(Movement::Stopped)) => Some(ContactState::Stopped),
@@ -40,6 +45,21 @@ pub(super) fn sv_state(reading: &Reading<'_>, account: &mut Account) {
             if stopping && record.sv_speed_mps.is_none() && stops_at_contact(reading) =>
         {
             Some(ContactState::Moving)
+        }
+        // "was coming to a stop when a van struck it": the column tells what it was about.
+        (Some(ContactState::Stopped), None | Some(Movement::Straight | Movement::Stopped))
+            if stopping
+                && record.sv_speed_mps.is_none()
+                && !told_speed(account, |mps| mps == 0.0)
+                && (is_stopping_when(reading) || moves_at_contact(reading)) =>
+        {
+            Some(ContactState::Moving)
+        }
+        // "was operating in autonomous mode, yielding to traffic, when a van struck it", and by the column it stood.
+        (Some(ContactState::Moving), Some(Movement::Stopped))
+            if (yields || is_said_to_stand(reading)) && !moves_at_contact(reading) =>
+        {
+            Some(ContactState::Stopped)
         }
         // It moved into something, and backwards by the column.
         (Some(state), Some(Movement::Backing)) if state != ContactState::Reversing && moves_at_contact(reading) => {
@@ -100,7 +120,12 @@ pub(super) fn sv_state(reading: &Reading<'_>, account: &mut Account) {
         account.sv.state = Some(Fact::of_column(value, name));
         if value.stands() {
             account.sv.standing.get_or_insert_with(|| {
-                let how = if words == Some(ContactState::Moving) { Standing::Stopping } else { Standing::FromTheStart };
+                let how = match words {
+                    Some(ContactState::Moving) if yields || is_said_to_stand(reading) => Standing::CameToStop,
+                    Some(ContactState::Moving) => Standing::Stopping,
+                    _ if nominal::is_in_turn(reading, SUBJECT) => Standing::CameToStop,
+                    _ => Standing::FromTheStart,
+                };
                 Fact::of_column(how, name)
             });
             if account.sv.reasons.is_empty() {
@@ -207,6 +232,66 @@ fn stops_at_contact(reading: &Reading<'_>) -> bool {
         let while_it = number > contact && frame.joint == Some(crate::chunk::Joint::While);
         frame.sentence == sentence && while_it && frame.act() == Some(Act::Stop)
     })
+}
+
+/// Whether the sentence of the contact tells last of the subject vehicle that it "was coming to a stop when" the other came.
+fn is_stopping_when(reading: &Reading<'_>) -> bool {
+    let Some(contact) = reading.contacts.first else { return false };
+    let (frames, tokens) = (&reading.story.frames, &reading.story.tokens);
+    let last = reading.before(SUBJECT).take_while(|(number, _)| *number < contact);
+    let last = last.filter(|(_, frame)| frame.happened() && frame.act().is_some()).last();
+    last.is_some_and(|(_, frame)| {
+        let word = |back: usize| frame.first.checked_sub(back).map_or("", |at| tokens[at].text.as_str());
+        let was = (0..3).any(|back| word(back) == "was") || (word(2), word(1)) == ("process", "of");
+        let between = frame.end..frames[contact].first.max(frame.end);
+        frame.act() == Some(Act::Stop)
+            && frame.form == Form::Ing
+            && was
+            && frame.sentence == frames[contact].sentence
+            && tokens[between].iter().any(|token| token.text == "when")
+    })
+}
+
+/// "At the time of contact, was stopped for traffic": without a subject, it is told of the subject vehicle.
+fn is_said_to_stand(reading: &Reading<'_>) -> bool {
+    let tokens = &reading.story.tokens;
+    reading.story.frames.iter().any(|frame| {
+        let range = reading.story.sentences[frame.sentence];
+        let lead: Vec<&str> = tokens[range.first..frame.first].iter().map(|token| token.text.as_str()).collect();
+        let then = matches!(lead.as_slice(), ["at", "the", "time" | "moment", "of", ..]) && lead.len() < LEAD;
+        let was = matches!(tokens[frame.first].text.as_str(), "was" | "were");
+        then && was && frame.who.is_none() && frame.act() == Some(Act::Hold) && frame.happened()
+    })
+}
+
+/// Fewer words stand before a verb of which nobody is the subject. [tokens]
+const LEAD: usize = 8;
+
+/// Whether the last that is told of the subject vehicle before the contact is that it "was yielding".
+fn yields_last(reading: &Reading<'_>) -> bool {
+    let tells = |frame: &Frame| frame.happened() && (frame.act().is_some() || frame.sense == Sense::Yield);
+    let contact = reading.contacts.first.unwrap_or(0);
+    let before = reading.before(SUBJECT).filter(|(number, frame)| *number < contact && tells(frame));
+    before.last().is_some_and(|(_, frame)| frame.sense == Sense::Yield && frame.form == Form::Ing)
+}
+
+/// Whether somebody is told to stand for others on the road, or for a light or a sign, and not for its passengers.
+fn waits_in_traffic(account: &Account) -> bool {
+    let rides = account.sv.reasons.iter().any(|reason| reason.value == StandReason::PickupDropoff);
+    let waits = |reason: &Fact<StandReason>| {
+        use StandReason as R;
+        let traffic = matches!(
+            reason.value,
+            R::Yield | R::Queue | R::RedLight | R::StopSign | R::LeadVehicle | R::BlockedJunction
+        );
+        traffic && reason.source.is_told()
+    };
+    !rides && account.sv.reasons.iter().any(waits)
+}
+
+/// Whether words tell such a speed of the subject vehicle.
+fn told_speed(account: &Account, of: impl Fn(f64) -> bool) -> bool {
+    account.sv.speeds.iter().any(|speed| speed.value.meaning != SpeedMeaning::Posted && of(speed.value.mps))
 }
 
 /// Whether the sentence of the contact says that the subject vehicle sets off.

@@ -5,13 +5,14 @@
 use super::parser::{Carry, Parser};
 use super::row::{Spoken, single};
 use crate::chunk::Chunk;
-use crate::lexicon::{Form, Occupant, Sense};
-use crate::token::TokenKind;
+use crate::lexicon::{Form, Occupant, Progress, Sense};
+use crate::token::{Token, TokenKind};
+use crate::world::SUBJECT;
 use recrash_model::account::{Act, Compass, LeftRight};
 
 type Rule = fn(&Parser<'_>, &Spoken<'_>, &Carry) -> Option<Sense>;
 
-const SENSES: [Rule; 17] = [
+const SENSES: [Rule; 18] = [
     stands_backed_up,
     remains_so,
     is_ridden,
@@ -29,6 +30,7 @@ const SENSES: [Rule; 17] = [
     swings_over,
     moves_itself,
     enters_a_slip_lane,
+    tries_to_avoid,
 ];
 
 impl Parser<'_> {
@@ -73,6 +75,31 @@ fn enters_a_slip_lane(parser: &Parser<'_>, verb: &Spoken<'_>, carry: &Carry) -> 
         words.iter().any(|word| word.starts_with(other))
     });
     (slip && !back).then_some(Sense::Sided(Act::Turn, LeftRight::Right))
+}
+
+/// "attempted to avoid the collision": it braked, where no other word tells what it did.
+fn tries_to_avoid(parser: &Parser<'_>, verb: &Spoken<'_>, carry: &Carry) -> Option<Sense> {
+    const OTHERWISE: [&str; 9] =
+        ["swerv", "steer", "veer", "brak", "slow", "decelerat", "stop", "maneuver", "accelerat"];
+    let avoids = verb.sense == Sense::Other && verb.word(parser).starts_with("avoid");
+    if !avoids || carry.progress != Some(Progress::Tried) || carry.negated {
+        return None;
+    }
+    let own = carry.subject.as_ref().is_some_and(|subject| subject.actor == SUBJECT);
+    let behind = &parser.tokens[verb.placed().end..];
+    let crash = |token: &Token| {
+        matches!(token.text.as_str(), "collision" | "contact" | "crash" | "impact" | "accident" | "incident")
+    };
+    let whole = parser.tokens.iter().skip(carry_first(parser, verb)).take_while(|token| token.text != ".");
+    let mut whole = whole.map(|token| token.text.as_str());
+    let otherwise = whole.any(|word| OTHERWISE.iter().any(|stem| word.starts_with(stem)));
+    (own && behind.iter().take(4).any(crash) && !otherwise).then_some(Sense::Act(Act::Slow))
+}
+
+/// The first token of the sentence of a verb.
+fn carry_first(parser: &Parser<'_>, verb: &Spoken<'_>) -> usize {
+    let before = &parser.tokens[..verb.placed().first];
+    before.iter().rposition(|token| token.text == ".").map_or(0, |at| at + 1)
 }
 
 /// "traffic was backed up" stands.

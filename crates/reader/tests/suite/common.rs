@@ -136,6 +136,7 @@ pub fn facts(account: &Account) -> BTreeMap<&'static str, String> {
             account.ahead.as_ref().map(|ahead| if ahead.value { "yes" } else { "no" }.to_owned()).unwrap_or_default(),
         ),
         ("place", name(&account.place.kind)),
+        ("lanes", name(&account.place.lanes)),
         ("features", features.join(" ")),
         ("feature", feature.map(|feature| coded(&feature)).unwrap_or_default()),
         ("others", others.join(" ")),

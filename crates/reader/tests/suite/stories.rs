@@ -238,3 +238,64 @@ fn without_a_told_touch_one_sentence_comes_behind_the_other() {
     let acts = account_of(text).expect("an account").partner.expect("a partner").acts;
     assert!(acts[0].after_other.is_some(), "{acts:?}");
 }
+
+#[test]
+fn who_was_yielding_stood_where_the_column_says_so() {
+    let text = "The AV, operating in autonomous mode, was yielding to oncoming traffic on Elm Street when a van made contact with the \
+                rear of the AV.";
+    let van = PartnerKind::Van;
+    let stood = beside_columns(text, van, Some(Movement::Stopped));
+    assert_eq!((stood["sv_state"].as_str(), stood["standing"].as_str()), ("stopped", "came_to_stop"));
+    assert_eq!(beside_columns(text, van, Some(Movement::Straight))["sv_state"], "moving");
+    // Told to be moving so fast, it does not stand.
+    let rolls = "The AV was traveling at 2 MPH and was yielding to oncoming traffic when a van made contact with the rear of the AV.";
+    assert_eq!(beside_columns(rolls, van, Some(Movement::Stopped))["sv_state"], "moving");
+}
+
+#[test]
+fn a_stand_at_the_contact_without_a_subject_is_the_subject_vehicle_s() {
+    let text = "The AV was traveling north on Elm Street when a van made contact with its rear. At the time of contact, was stopped for traffic.";
+    assert_eq!(beside_columns(text, PartnerKind::Van, Some(Movement::Stopped))["sv_state"], "stopped");
+    assert_eq!(beside_columns(text, PartnerKind::Van, Some(Movement::Straight))["sv_state"], "moving");
+}
+
+#[test]
+fn who_was_coming_to_a_stop_when_it_was_hit_moved() {
+    let text = "The AV was coming to a stop for traffic ahead when a van made contact with the rear of the AV.";
+    for column in [None, Some(Movement::Straight), Some(Movement::Stopped)] {
+        assert_eq!(beside_columns(text, PartnerKind::Van, column)["sv_state"], "moving");
+    }
+    let then = "The AV was coming to a stop for traffic ahead when a van made contact with the rear of the AV. The AV was traveling 0 MPH.";
+    assert_eq!(beside_columns(then, PartnerKind::Van, None)["sv_state"], "stopped");
+    let after =
+        "The AV was about to turn left after stopping for traffic when a van made contact with the rear of the AV.";
+    assert_ne!(beside_columns(after, PartnerKind::Van, None)["sv_state"], "moving");
+    let stopped = "The AV came to a stop for traffic ahead when a van made contact with the rear of the AV.";
+    assert_eq!(beside_columns(stopped, PartnerKind::Van, None)["sv_state"], "stopped");
+}
+
+#[test]
+fn an_autonomous_vehicle_is_no_shuttle_by_that_name() {
+    let kind = |vehicle: &str| {
+        let text = "The AV was stopped. A van made contact with the rear of the AV.";
+        let mut record = common::record("1-1", 1, text);
+        vehicle.clone_into(&mut record.vehicle);
+        recrash_reader::account(&recrash_reader::incidents(&[record])[0])
+            .expect("an account")
+            .sv
+            .kind
+            .map(|kind| kind.value)
+    };
+    assert_eq!(kind("2021 Autonomous 4XY12"), None);
+    assert_eq!(kind("2019 Navya Autonom"), Some(recrash_model::account::Kind::Bus));
+}
+
+#[test]
+fn who_stops_for_traffic_stands_in_its_lane_whatever_the_column_says() {
+    let text = "The AV was traveling west and came to a stop to yield to an oncoming dump truck. The left side of the dump truck made contact \
+                with the left side of the AV.";
+    assert_eq!(beside_columns(text, PartnerKind::HeavyTruck, Some(Movement::Parked))["sv_state"], "stopped");
+    let plain =
+        "The AV was stopped on Elm Street. The left side of a dump truck made contact with the left side of the AV.";
+    assert_eq!(beside_columns(plain, PartnerKind::HeavyTruck, Some(Movement::Parked))["sv_state"], "parked");
+}

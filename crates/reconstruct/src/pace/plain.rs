@@ -15,6 +15,10 @@ pub(crate) const SETS_OFF_MPS2: f64 = 1.2;
 /// Acceleration of who stood before, and is under way at the contact. [m/s^2]
 const STARTS_MPS2: f64 = 1.6;
 
+/// Who backs no faster than this at the contact has come so far. [m/s, m]
+const BACKS_SLOWLY_MPS: f64 = 0.6;
+const BACKS_M: f64 = 1.5;
+
 /// Nobody takes longer to set off. [s]
 const LONGEST_START_S: f64 = 6.0;
 
@@ -93,6 +97,10 @@ pub(crate) fn pace(contact_s: f64, side: &Side, rolling_mps: f64, stood_s: f64) 
             let go = Deed::Speed { to_mps: side.speed_mps, rate_mps2: side.speed_mps / moving_s };
             let driven_m = 0.5 * side.speed_mps * moving_s;
             Pace { speed_mps: 0.0, acts: vec![when(contact_s - moving_s, go)], driven_m }
+        }
+        // Who backs this slowly is seen to.
+        ContactState::Reversing if side.speed_mps <= BACKS_SLOWLY_MPS => {
+            start_over(contact_s, side.speed_mps, BACKS_M).unwrap_or(STANDING)
         }
         ContactState::SettingOff | ContactState::Reversing => {
             // So that it sets off at a step: the rate gives way.

@@ -82,7 +82,7 @@ pub(super) fn side(party: &Party, kind: Option<Kind>, assumed: &mut Vec<String>,
     // "Came up from behind at 23 mph and struck it": who is told to come so fast, and of no change of speed, struck it so fast.
     let steady =
         state == ContactState::Moving && turning == Turning::No && !stood_first && !slows && !gained_last(party);
-    let came_mps = told_mps(SpeedMeaning::Approach).filter(|_| who == "partner" && steady && impact_mps.is_none());
+    let came_mps = told_mps(SpeedMeaning::Approach).filter(|_| steady && impact_mps.is_none());
     // Of somebody on foot, an animal or a thing the state says enough.
     let rides = |kind: Kind| matches!(kind, Kind::ScooterRider | Kind::Skateboarder);
     let drives = kind.is_none_or(|kind| {

@@ -13,7 +13,9 @@ pub(super) fn last_way(party: &Party) -> Option<&ActFact> {
     let before = || party.acts.iter().filter(|fact| !fact.after_contact && !fact.begun);
     let last_stop = before().filter(|fact| matches!(fact.act, Act::Stop | Act::Hold)).map(|fact| fact.step).max();
     let stopping = told(&party.standing) == Some(Standing::Stopping);
-    let stood = if stopping { u32::MAX } else { last_stop? };
+    let came = stopping || told(&party.standing) == Some(Standing::CameToStop);
+    // That it stood a column may tell alone.
+    let stood = if stopping { u32::MAX } else { last_stop.or(came.then_some(u32::MAX))? };
     let goes_on = |fact: &ActFact| match (&fact.source, fact.act) {
         // "advanced", in its turn.
         (Source::Words { text, .. }, Act::Follow) => text.to_lowercase().starts_with("travel"),
@@ -23,7 +25,6 @@ pub(super) fn last_way(party: &Party) -> Option<&ActFact> {
         }
     };
     let goes_on = |fact: &ActFact| goes_on(fact) && !(stopping && fact.act == Act::Park);
-    let came = stopping || told(&party.standing) == Some(Standing::CameToStop);
     // A way from a stop that it had made to the next was driven, also where it was only begun.
     let first_stop = before().filter(|fact| matches!(fact.act, Act::Stop | Act::Hold)).map(|fact| fact.step).min();
     let begun = |fact: &&ActFact| {

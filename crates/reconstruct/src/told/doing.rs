@@ -46,6 +46,11 @@ impl Doing {
         matches!(self.act, Act::Pass) && self.begun
     }
 
+    /// Whether it was coming to a stop.
+    pub(crate) const fn is_begun_stop(&self) -> bool {
+        matches!(self.act, Act::Stop) && self.begun
+    }
+
     /// To which side it passes, or was about to.
     pub(super) fn passes_on(&self) -> Option<LeftRight> {
         self.side.filter(|_| self.act == Act::Pass)

@@ -34,6 +34,15 @@ const MERGES_MPS: f64 = 1.5;
 /// Who comes up to the other one, or is come up to, beside it or in its lane, is so much faster or slower. [m/s]
 const OTHER_PACE_MPS: f64 = 2.5;
 
+/// Who is run into from behind at a told speed moves at half of that, or slower by [`OTHER_PACE_MPS`], where that is more.
+const OVERTAKEN_SHARE: f64 = 0.5;
+
+/// An ego that was coming to a stop is no faster. [m/s]
+const STOPS_MPS: f64 = 2.5;
+
+/// Nobody who moves is slower. [m/s]
+const SLOWEST_MPS: f64 = 0.4;
+
 /// Highest speed in a turn of who comes up beside the ego. [m/s]
 const FASTEST_TURN_MPS: f64 = 7.0;
 
@@ -74,6 +83,17 @@ impl Told {
         self.ahead == Some(true) && over && wheels && !slow && !passed && self.sv_aside().is_none()
     }
 
+    /// No faster is an ego of which no speed is told, where one that comes from behind is told to run into it at one. [m/s]
+    fn overtaken_mps(&self) -> f64 {
+        let moves = matches!(self.sv.state, ContactState::Moving | ContactState::SettingOff);
+        let comes_mps =
+            self.cp.impact_mps.filter(|_| self.origin == Origin::Behind && moves && !self.cp.state.stands());
+        match (self.sv.impact_mps, comes_mps) {
+            (None, Some(mps)) => (mps - OTHER_PACE_MPS).max(OVERTAKEN_SHARE * mps).max(SLOWEST_MPS),
+            _ => f64::INFINITY,
+        }
+    }
+
     /// Speeds at the contact: as told, or such that who closes on whom does.
     pub(crate) fn speeds(&mut self) {
         let (driven_mps, slides) = (self.driven_mps(), self.is_sliding());
@@ -107,14 +127,23 @@ impl Told {
         let fit = |speed: f64| if slow { speed.min(3.0) } else { speed };
         self.sv.speed_mps = match (self.sv.impact_mps, self.sv.state.stands()) {
             (_, true) => 0.0,
-            (Some(told), false) => told.max(0.4),
-            (None, false) => fit(usual(&self.sv)),
+            (Some(told), false) => told.max(SLOWEST_MPS),
+            (None, false) => {
+                let stops = self.sv.acts.last().is_some_and(Doing::is_begun_stop);
+                let slowed_mps = self.sv.slowed_from.and_then(|slowed| slowed.0).unwrap_or(f64::INFINITY);
+                as_told(self.sv.manner, fit(usual(&self.sv)), slow, self.posted_mps).min(if stops {
+                    slowed_mps.min(STOPS_MPS)
+                } else {
+                    slowed_mps
+                })
+            }
         };
+        self.sv.speed_mps = self.sv.speed_mps.min(self.overtaken_mps());
         self.cp.speed_mps = match (self.cp.impact_mps, self.cp.state.stands()) {
             // It is thrown at the ego.
             _ if self.is_thrown() => THROWN_MPS,
             (_, true) => 0.0,
-            (Some(told), false) => told.max(0.4),
+            (Some(told), false) => told.max(SLOWEST_MPS),
             (None, false) if self.queues() => fit(QUEUED_MPS),
             (None, false) => as_told(self.cp.manner, fit(usual(&self.cp)), slow, self.posted_mps),
         };

@@ -167,3 +167,22 @@ fn who_had_pulled_over_stands_before_the_other_backs() {
     let backs = partner(&made).0.iter().position(|state| state.speed() < -0.1).expect("it backs");
     assert!(backs + 5 >= stands, "it backs from {backs}, the AV stands from {stands}");
 }
+
+#[test]
+fn an_ego_drives_as_slowly_as_is_told_of_it_or_of_who_runs_into_it() {
+    let mps = |text: &str| {
+        let made = made(&story(text));
+        made.rollout.ego_track().states[before_contact(&made)].speed().abs()
+    };
+    let hit = "The AV was traveling north on Elm Street and slowing for traffic ahead when a van behind it made contact with the rear of the AV at \
+               approximately 7 MPH.";
+    assert!((0.3..2.0).contains(&mps(hit)), "{}", mps(hit));
+    let then = format!("{hit} The AV was traveling at approximately 2 MPH.");
+    assert!((0.5..1.4).contains(&mps(&then)), "{}", mps(&then));
+    let came = "The AV was traveling north on Elm Street at less than 4 MPH. A van approached the AV from behind, and the front of the van made \
+                contact with the rear of the AV.";
+    assert!((1.3..2.3).contains(&mps(came)), "{}", mps(came));
+    let stopping =
+        "The AV was coming to a stop for traffic ahead when a van behind it made contact with the rear of the AV.";
+    assert!((0.3..3.0).contains(&mps(stopping)), "{}", mps(stopping));
+}

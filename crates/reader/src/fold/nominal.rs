@@ -1,0 +1,126 @@
+//! Turns that no verb tells: "slowed during a left turn", "was stopped in the slip lane".
+
+use super::Reading;
+use crate::frame::Frame;
+use crate::lexicon::Sense;
+use crate::world::{Actor, SUBJECT};
+use recrash_model::account::{Act, ActFact, LeftRight};
+
+/// Words that stand between "during" and "turn", at most: "during its planned protected left hand turn". [tokens]
+const TURN_WITHIN: usize = 7;
+
+/// The road to which a slip lane leads is named within so many words behind it. [tokens]
+const ROAD_WITHIN: usize = 12;
+
+/// A turn, and the tokens that tell it.
+struct Turn {
+    act: Act,
+    side: Option<LeftRight>,
+    first: usize,
+    end: usize,
+}
+
+/// Whether somebody is told to have been in a turn, by no verb.
+pub(super) fn is_in_turn(reading: &Reading<'_>, actor: Actor) -> bool {
+    turn_of(reading, actor).is_some()
+}
+
+/// Adds the turn in which somebody was, where none is told with a verb: before it slowed or stood in it.
+pub(super) fn add_turn(reading: &Reading<'_>, actor: Actor, all: &mut Vec<ActFact>) {
+    let turns = |fact: &ActFact| matches!(fact.act, Act::Turn | Act::UTurn) && !fact.after_contact;
+    if all.iter().any(turns) {
+        return;
+    }
+    let Some((turn, number)) = turn_of(reading, actor) else { return };
+    let waits = |fact: &ActFact| matches!(fact.act, Act::Stop | Act::Hold | Act::Slow) && !fact.after_contact;
+    let before = all.iter().filter(|fact| !fact.after_contact).count();
+    let at = all.iter().position(waits).unwrap_or(before);
+    // It turned before it waited.
+    if let Some(waiting) = all.get_mut(at).filter(|fact| waits(fact)) {
+        waiting.step = waiting.step.max(1);
+    }
+    let step = all.get(at).filter(|fact| waits(fact)).map_or(number as u32, |fact| fact.step - 1);
+    let source = reading.words(turn.first, turn.end);
+    let (act, side) = (turn.act, turn.side);
+    let (after_contact, begun, done, after_other, manner) = (false, false, false, None, None);
+    all.insert(at, ActFact { act, side, step, after_contact, begun, done, after_other, manner, source });
+}
+
+/// The turn in which somebody is told to have been, and the frame with which that is told.
+fn turn_of(reading: &Reading<'_>, actor: Actor) -> Option<(Turn, usize)> {
+    let until = reading.until().min(reading.story.tokens.len());
+    (0..until).find_map(|at| {
+        let turn = during(reading, at).or_else(|| slip_lane(reading, at).filter(|_| actor == SUBJECT))?;
+        let number = told_with(reading, actor, at)?;
+        Some((turn, number))
+    })
+}
+
+/// The frame beside these words, where it is told of somebody: the last before them in their sentence, else the next behind them.
+fn told_with(reading: &Reading<'_>, actor: Actor, at: usize) -> Option<usize> {
+    let story = &reading.story;
+    let sentence = story.sentences.iter().position(|sentence| (sentence.first..sentence.end).contains(&at))?;
+    let here = |(_, frame): &(usize, &Frame)| frame.sentence == sentence && !frame.aside;
+    let frames = || story.frames.iter().enumerate().filter(here);
+    let before = frames().rfind(|(_, frame)| frame.first < at);
+    // "During the left turn, a van came": that had turned of which a turn is told.
+    let known = is_known(reading, at);
+    let (number, frame) = before.or_else(|| frames().find(|(_, frame)| frame.first > at && !known))?;
+    // "It was hit by a van during its turn": its own.
+    let subject = if frame.passive { frame.object.or(frame.who) } else { frame.who };
+    let of = subject == Some(actor);
+    // "while merging in a slip lane" is told with its own verb.
+    let told = !matches!(frame.sense, Sense::Headline | Sense::Act(Act::LaneChange)) && !reading.is_after(number);
+    (of && told).then_some(number)
+}
+
+/// "during the turn": one that was told before.
+fn is_known(reading: &Reading<'_>, at: usize) -> bool {
+    let during = reading.story.tokens[at].text == "during";
+    let article = reading.story.tokens.get(at + 1).map_or("", |token| token.text.as_str());
+    during && matches!(article, "the" | "this" | "that")
+}
+
+/// "during an unprotected left turn", "in the middle of its right turn", "midway through a U-turn".
+fn during(reading: &Reading<'_>, at: usize) -> Option<Turn> {
+    let tokens = &reading.story.tokens;
+    let word = |at: usize| tokens.get(at).map_or("", |token| token.text.as_str());
+    let behind = match (word(at), word(at + 1)) {
+        ("during", _) => at + 1,
+        ("while" | "still", "in") => at + 2,
+        ("middle" | "midst" | "course", "of") | ("midway" | "halfway" | "partway", "through" | "into") => at + 2,
+        _ => return None,
+    };
+    let ends = |at: &usize| matches!(word(*at), "," | "." | "and" | "when" | "as" | "lane" | "from" | "");
+    let turn = (behind..behind + TURN_WITHIN).take_while(|at| !ends(at)).find(|&at| word(at) == "turn")?;
+    let lane = matches!(word(turn + 1), "lane" | "lanes" | "only" | "pocket" | "signal" | "phase" | "arrow" | "light");
+    let words = || (behind..turn).map(word);
+    let (act, side) = if words().any(|word| word == "left") {
+        (Act::Turn, Some(LeftRight::Left))
+    } else if words().any(|word| word == "right") {
+        (Act::Turn, Some(LeftRight::Right))
+    } else if words().any(|word| matches!(word, "u" | "point")) {
+        (Act::UTurn, None)
+    } else {
+        return None;
+    };
+    (!lane).then_some(Turn { act, side, first: at, end: turn + 1 })
+}
+
+/// "in the slip lane from southbound Elm Street": where traffic keeps right, in a turn to the right. Onto a highway it is a ramp.
+fn slip_lane(reading: &Reading<'_>, at: usize) -> Option<Turn> {
+    let tokens = &reading.story.tokens;
+    let word = |at: usize| tokens.get(at).map_or("", |token| token.text.as_str());
+    if !matches!(word(at), "in" | "on" | "within" | "inside") {
+        return None;
+    }
+    let article = usize::from(matches!(word(at + 1), "the" | "a" | "its" | "that" | "this"));
+    let turn = if (word(at + 1 + article), word(at + 2 + article)) == ("right", "turn") { 2 } else { 0 };
+    let slip = at + 1 + article + turn;
+    let end = slip + 2;
+    let clause = (end..end + ROAD_WITHIN).map(word).take_while(|word| !matches!(*word, "," | "." | "when" | ""));
+    let mut clause = clause.collect::<Vec<_>>().into_iter();
+    let ramp = clause.any(|word| matches!(word, "highway" | "freeway" | "interstate" | "ramp"));
+    let slips = word(slip) == "slip" && matches!(word(slip + 1), "lane" | "lanes");
+    (slips && !ramp).then_some(Turn { act: Act::Turn, side: Some(LeftRight::Right), first: at, end })
+}
