@@ -573,9 +573,10 @@ fn stood_open(reading: &Reading<'_>, number: usize, opened: &Frame) -> bool {
     let part = |piece: &Option<Piece>| piece.as_ref().is_some_and(|piece| !piece.door && !piece.parts.is_empty());
     let passes = |frame: &Frame| {
         let by = matches!(frame.act(), Some(Act::Pass | Act::Drift | Act::LaneChange));
-        by && frame.who != opened.who && frame.sentence > opened.sentence && frame.happened()
+        by && frame.who == reading.contacts.partner && frame.sentence > opened.sentence && frame.happened()
     };
-    part(&crash.with) && part(&crash.on) && frames[number..contact].iter().any(passes)
+    let own = opened.who == Some(SUBJECT);
+    own && part(&crash.with) && part(&crash.on) && frames[number..contact].iter().any(passes)
 }
 
 fn injury(reading: &Reading<'_>) -> Option<Fact<bool>> {

@@ -106,6 +106,7 @@ impl Parser<'_> {
         let all = chunks(self.tokens, sentence.first, sentence.end);
         let mut carry = Carry { fresh: true, ..Carry::default() };
         let begun = self.frames.len();
+        self.world.first = sentence.first;
         for at in 0..all.len() {
             self.step(&all, at, &mut carry);
         }

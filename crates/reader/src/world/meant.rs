@@ -194,7 +194,7 @@ impl World {
         if self.apart {
             return Some(Meant::New);
         }
-        // "Bicycle was going fast", of the one bicycle: the article was left out.
+        // "Bicycle was going fast", at the head of a sentence, of the one bicycle: the article was left out.
         if let Some(actor) =
             self.only_one(sought).filter(|_| bare && noun.adjectives.is_empty() && noun.number.is_none())
         {
@@ -218,7 +218,7 @@ impl World {
 
     /// The only one of just this kind who was met.
     fn only_one(&self, sought: &Sought<'_>) -> Option<Actor> {
-        let own = sought.kind != Kind::Trailer;
+        let own = self.begins && sought.kind != Kind::Trailer;
         let alike = |known: &Known| own && known.kind == Some(sought.kind) && known.mentions > 0 && sought.fits(known);
         let mut all = (1..self.actors.len()).filter(|&actor| alike(&self.actors[actor]));
         let (only, more) = (all.next()?, all.next());

@@ -118,6 +118,10 @@ pub struct World {
     pub apart: bool,
     /// The record says that it crashed with a car.
     with_car: bool,
+    /// The noun that is looked up begins its sentence.
+    begins: bool,
+    /// First token of the sentence that is read.
+    pub first: usize,
     /// Number of the sentence that is read.
     pub sentence: usize,
     /// Who the sentence, or the one before, is about.
@@ -140,6 +144,8 @@ impl World {
             touches: false,
             apart: false,
             with_car: own.partner == Some("car"),
+            begins: false,
+            first: 0,
             sentence: 0,
             topic: SUBJECT,
         }
@@ -153,6 +159,7 @@ impl World {
             (1..self.actors.len())
                 .rfind(|&group| self.actors[group].several && self.actors[group].kind.is_some_and(fits))
         });
+        self.begins = tokens.0 == self.first;
         let actor = self.find(noun, hint).unwrap_or_else(|| self.add(noun));
         if let Some(group) = group.filter(|group| *group != actor) {
             let of = self.actors[group].clone();
