@@ -129,7 +129,9 @@ class Run:
                     hash64 = ((hash64 ^ byte) * 0x100000001B3) & 0xFFFFFFFFFFFFFFFF
         self.values["state_hash"] = f"{hash64:016x}"
         least, first = {}, {}
-        for at, actor in enumerate(actors[1:], 1):
+        still = lambda pose: [dict(pose["position"], heading=pose["heading"])] * len(ego["states"])
+        things = [dict(thing, role="thing", states=still(thing["pose"])) for thing in rollout["obstacles"]]
+        for at, actor in enumerate(actors[1:] + things, 1):
             from_s, until_s = actor.get("appears_s", 0.0) - 1e-9, actor.get("gone_s", math.inf) - 1e-9
             for k, (mine, other) in enumerate(zip(ego["states"], actor["states"])):
                 if not handover_s - 1e-9 <= k * STEP_S <= end + 1e-9:
@@ -137,17 +139,16 @@ class Run:
                 moved = (0.0, 0.0) if from_s <= k * STEP_S < until_s else (1e6 - other["x"], 1e6 - other["y"])
                 d = gap(Box(mine, ego["length_m"], ego["width_m"]), Box(other, actor["length_m"], actor["width_m"], moved))
                 least[at], first[at] = min(d, least.get(at, math.inf)), first.get(at, d)
-        if touched:
-            least[touched["b"]] = 0.0
-        for role in ("traffic", "partner"):
-            of_role = [d for at, d in least.items() if actors[at]["role"] == role]
-            self.values["least_gap"] = min(of_role) if of_role else self.values.get("least_gap")
-        others = [at for at in least if actors[at]["role"] == "partner" and (not touched or at != touched["b"])]
-        near = any(least[at] < limits["min_gap_m"] and first[at] - least[at] > APPROACH_M for at in others)
         bumps = [e for e in events if e["kind"]["event"] == "obstacle_contact" and e["kind"]["actor"] == 0]
-        hit = any(e["time_s"] <= end + 1e-9 for e in bumps)
-        ended = rollout["termination"]["kind"] in ("off_road", "stuck")
-        self.values["verdict"] = "failed" if touched or near or hit or ended else "passed"
+        hit = [len(actors) + e["kind"]["obstacle"] for e in bumps if handover_s - 1e-9 <= e["time_s"] <= end + 1e-9]
+        least.update(dict.fromkeys(hit + ([touched["b"]] if touched else []), 0.0))
+        for role in ("thing", "traffic", "partner"):
+            of_role = [d for at, d in least.items() if (actors + things)[at]["role"] == role]
+            self.values["least_gap"] = min(of_role) if of_role else self.values.get("least_gap")
+        others = [at for at in least if at < len(actors) and actors[at]["role"] == "partner" and not (touched and at == touched["b"])]
+        near = any(least[at] < limits["min_gap_m"] and first[at] - least[at] > APPROACH_M for at in others)
+        failed = touched or near or hit or rollout["termination"]["kind"] in ("off_road", "stuck")
+        self.values["verdict"] = "failed" if failed else "passed"
         if touched:
             states, tracks = (touched["a_state"], touched["b_state"]), (ego, actors[touched["b"]])
             boxes = [Box(state, track["length_m"], track["width_m"]) for state, track in zip(states, tracks)]
@@ -245,6 +246,5 @@ def main(folder):
 
 if __name__ == "__main__":
     problems, checked = main(Path(sys.argv[1]) if len(sys.argv) > 1 else Path(__file__).resolve().parent)
-    good = f"{checked} numbers come out as they are told, and every claim and file is as it was written"
-    print("\n".join(problems) if problems else good)
+    print("\n".join(problems) or f"{checked} numbers come out as they are told, and every claim and file is as it was written")
     sys.exit(1 if problems else 0)
