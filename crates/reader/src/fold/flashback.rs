@@ -106,7 +106,11 @@ fn leads_to_the_contact(story: &Story, contacts: &Contacts, sentence: usize) -> 
     let words: Vec<&str> = story.tokens[range.first..range.end].iter().map(|token| token.text.as_str()).collect();
     let touch =
         |word: &&str| matches!(*word, "contact" | "impact" | "collision" | "colliding" | "collided" | "impacting");
-    let names = |rest: &[&str]| rest.iter().take(4).any(touch);
+    // "contact information" is exchanged afterwards.
+    let names = |rest: &[&str]| {
+        let at = rest.iter().take(4).position(|word| touch(&word));
+        at.is_some_and(|at| !matches!(rest.get(at + 1), Some(&("information" | "details" | "info"))))
+    };
     let until = (1..words.len()).find(|&at| match words[at] {
         "before" => names(&words[at + 1..]),
         "prior" => words.get(at + 1) == Some(&"to") && names(&words[at + 2..]),
@@ -116,7 +120,15 @@ fn leads_to_the_contact(story: &Story, contacts: &Contacts, sentence: usize) -> 
     let one = |actor: Option<usize>| actor == Some(SUBJECT) || actor.is_some() && actor == contacts.partner;
     let mut told = story.frames.iter().filter(|frame| frame.sentence == sentence && !frame.aside);
     let leads = told.any(|frame| frame.first < until && one(frame.who) && frame.act().is_some() && frame.happened());
-    leads && !is_aftermath(story, sentence)
+    // A second contact, or one with something else, came after the first.
+    let goes_on =
+        |word: &&str| matches!(*word, "then" | "second" | "another" | "again" | "further" | "subsequently" | "next");
+    let of_else = |frame: &Frame| {
+        let behind = frame.sentence == sentence && frame.first > until && frame.is_contact();
+        behind && [frame.who, frame.object].into_iter().flatten().any(|actor| !one(Some(actor)))
+    };
+    let else_met = story.frames.iter().any(of_else);
+    leads && !words.iter().any(|word| goes_on(&word)) && !else_met && !is_aftermath(story, sentence)
 }
 
 /// "It struck a van. It was coming to a stop before it made contact": who strikes then had only slowed.

@@ -228,26 +228,7 @@ impl Reading<'_> {
             |sentence: usize| self.story.frames.iter().any(|frame| frame.sentence == sentence && frame.is_contact());
         let mut back = (0..frame.sentence).rev().take_while(|&before| names(before + 1) == 0 && !touched(before + 1));
         let begun = back.any(|sentence| self.looks_back_from_crash(sentence) && names(sentence) == 1);
-        self.looks_back_from_crash(frame.sentence)
-            || self.ends_before_crash(frame)
-            || begun && frame.act() != Some(Act::Leave)
-    }
-
-    /// "It hit the rear of a van. It braked hard and was coming to a stop before making contact": how it came to it, told right behind it.
-    fn ends_before_crash(&self, frame: &Frame) -> bool {
-        let does =
-            matches!(frame.act(), Some(Act::Slow | Act::Stop | Act::Swerve | Act::Drift | Act::LaneChange | Act::Turn));
-        let next = self.contacts.first.is_some_and(|first| self.story.frames[first].sentence + 1 == frame.sentence);
-        let range = self.story.sentences[frame.sentence];
-        let word = |at: usize| self.story.tokens.get(at).map_or("", |token| token.text.as_str());
-        let more = (range.first..range.end).any(|at| matches!(word(at), "second" | "another" | "again" | "further"));
-        let before =
-            (frame.end..range.end).filter(|&at| word(at) == "before" || (word(at), word(at + 1)) == ("prior", "to"));
-        let crash = |at: usize| {
-            let mut behind = (at + 1..range.end.min(at + 5)).map(word);
-            behind.any(|word| matches!(word, "contact" | "impact" | "collision" | "colliding" | "hitting" | "striking"))
-        };
-        does && next && !more && before.into_iter().any(crash)
+        self.looks_back_from_crash(frame.sentence) || begun && frame.act() != Some(Act::Leave)
     }
 
     /// Whether a sentence begins with "prior to the collision".

@@ -1,13 +1,10 @@
-//! Turns that no verb tells: "slowed during a left turn", "was stopped in the slip lane".
+//! The turn that no verb tells: "was stopped in the slip lane".
 
 use super::Reading;
 use crate::frame::Frame;
-use crate::lexicon::Sense;
+use crate::lexicon::{Lexicon, Meaning, Sense};
 use crate::world::{Actor, SUBJECT};
 use recrash_model::account::{Act, ActFact, LeftRight};
-
-/// Words that stand between "during" and "turn", at most: "during its planned protected left hand turn". [tokens]
-const TURN_WITHIN: usize = 7;
 
 /// The road to which a slip lane leads is named within so many words behind it. [tokens]
 const ROAD_WITHIN: usize = 12;
@@ -50,7 +47,7 @@ pub(super) fn add_turn(reading: &Reading<'_>, actor: Actor, all: &mut Vec<ActFac
 fn turn_of(reading: &Reading<'_>, actor: Actor) -> Option<(Turn, usize)> {
     let until = reading.until().min(reading.story.tokens.len());
     (0..until).find_map(|at| {
-        let turn = during(reading, at).or_else(|| slip_lane(reading, at).filter(|_| actor == SUBJECT))?;
+        let turn = slip_lane(reading, at).filter(|_| actor == SUBJECT)?;
         let number = told_with(reading, actor, at)?;
         Some((turn, number))
     })
@@ -63,48 +60,20 @@ fn told_with(reading: &Reading<'_>, actor: Actor, at: usize) -> Option<usize> {
     let here = |(_, frame): &(usize, &Frame)| frame.sentence == sentence && !frame.aside;
     let frames = || story.frames.iter().enumerate().filter(here);
     let before = frames().rfind(|(_, frame)| frame.first < at);
-    // "During the left turn, a van came": that had turned of which a turn is told.
-    let known = is_known(reading, at);
-    let (number, frame) = before.or_else(|| frames().find(|(_, frame)| frame.first > at && !known))?;
+    let (number, frame) = before.or_else(|| frames().find(|(_, frame)| frame.first > at))?;
     // "It was hit by a van during its turn": its own.
     let subject = if frame.passive { frame.object.or(frame.who) } else { frame.who };
     let of = subject == Some(actor);
     // "while merging in a slip lane" is told with its own verb.
     let told = !matches!(frame.sense, Sense::Headline | Sense::Act(Act::LaneChange)) && !reading.is_after(number);
-    (of && told).then_some(number)
+    // "a truck in the slip lane", "struck by a sedan in the slip lane": that one is there.
+    let another = at.checked_sub(1).is_some_and(|last| is_of_others(reading, last));
+    (of && told && !another && !frame.is_contact()).then_some(number)
 }
 
-/// "during the turn": one that was told before.
-fn is_known(reading: &Reading<'_>, at: usize) -> bool {
-    let during = reading.story.tokens[at].text == "during";
-    let article = reading.story.tokens.get(at + 1).map_or("", |token| token.text.as_str());
-    during && matches!(article, "the" | "this" | "that")
-}
-
-/// "during an unprotected left turn", "in the middle of its right turn", "midway through a U-turn".
-fn during(reading: &Reading<'_>, at: usize) -> Option<Turn> {
-    let tokens = &reading.story.tokens;
-    let word = |at: usize| tokens.get(at).map_or("", |token| token.text.as_str());
-    let behind = match (word(at), word(at + 1)) {
-        ("during", _) => at + 1,
-        ("while" | "still", "in") => at + 2,
-        ("middle" | "midst" | "course", "of") | ("midway" | "halfway" | "partway", "through" | "into") => at + 2,
-        _ => return None,
-    };
-    let ends = |at: &usize| matches!(word(*at), "," | "." | "and" | "when" | "as" | "lane" | "from" | "");
-    let turn = (behind..behind + TURN_WITHIN).take_while(|at| !ends(at)).find(|&at| word(at) == "turn")?;
-    let lane = matches!(word(turn + 1), "lane" | "lanes" | "only" | "pocket" | "signal" | "phase" | "arrow" | "light");
-    let words = || (behind..turn).map(word);
-    let (act, side) = if words().any(|word| word == "left") {
-        (Act::Turn, Some(LeftRight::Left))
-    } else if words().any(|word| word == "right") {
-        (Act::Turn, Some(LeftRight::Right))
-    } else if words().any(|word| matches!(word, "u" | "point")) {
-        (Act::UTurn, None)
-    } else {
-        return None;
-    };
-    (!lane).then_some(Turn { act, side, first: at, end: turn + 1 })
+/// Whether a token is the noun for somebody else.
+fn is_of_others(reading: &Reading<'_>, at: usize) -> bool {
+    Lexicon::get().longest(&reading.story.tokens, at, |meaning| matches!(meaning, Meaning::Kind(_))).is_some()
 }
 
 /// "in the slip lane from southbound Elm Street": where traffic keeps right, in a turn to the right. Onto a highway it is a ramp.

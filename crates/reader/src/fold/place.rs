@@ -126,7 +126,11 @@ fn lanes(reading: &Reading<'_>, place: &mut Place, first: usize, end: usize) {
     let tokens = &reading.story.tokens;
     for at in first..end {
         // "in the single lane".
-        let single = (tokens[at].text == "single").then_some(1);
+        let word = |ahead: usize| tokens.get(at + ahead).map_or("", |token| token.text.as_str());
+        // "a single lane change", "a single lane of traffic" tell nothing of the road.
+        let of_lane = matches!(word(2), "change" | "changes" | "shift" | "merge" | "closure")
+            || (word(2), word(3)) == ("of", "traffic");
+        let single = (word(0) == "single" && !of_lane).then_some(1);
         let Some(number) = number(&tokens[at].text).or(single) else { continue };
         let next: Vec<&str> = tokens[at + 1..end.min(at + 5)].iter().map(|token| token.text.as_str()).collect();
         let lanes = next.iter().position(|word| matches!(*word, "lanes" | "lane"));

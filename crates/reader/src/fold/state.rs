@@ -56,9 +56,7 @@ pub(super) fn sv_state(reading: &Reading<'_>, account: &mut Account) {
             Some(ContactState::Moving)
         }
         // "was operating in autonomous mode, yielding to traffic, when a van struck it", and by the column it stood.
-        (Some(ContactState::Moving), Some(Movement::Stopped))
-            if (yields || is_said_to_stand(reading)) && !moves_at_contact(reading) =>
-        {
+        (Some(ContactState::Moving), Some(Movement::Stopped)) if yields && !moves_at_contact(reading) => {
             Some(ContactState::Stopped)
         }
         // It moved into something, and backwards by the column.
@@ -121,7 +119,7 @@ pub(super) fn sv_state(reading: &Reading<'_>, account: &mut Account) {
         if value.stands() {
             account.sv.standing.get_or_insert_with(|| {
                 let how = match words {
-                    Some(ContactState::Moving) if yields || is_said_to_stand(reading) => Standing::CameToStop,
+                    Some(ContactState::Moving) if yields => Standing::CameToStop,
                     Some(ContactState::Moving) => Standing::Stopping,
                     _ if nominal::is_in_turn(reading, SUBJECT) => Standing::CameToStop,
                     _ => Standing::FromTheStart,
@@ -251,21 +249,6 @@ fn is_stopping_when(reading: &Reading<'_>) -> bool {
             && tokens[between].iter().any(|token| token.text == "when")
     })
 }
-
-/// "At the time of contact, was stopped for traffic": without a subject, it is told of the subject vehicle.
-fn is_said_to_stand(reading: &Reading<'_>) -> bool {
-    let tokens = &reading.story.tokens;
-    reading.story.frames.iter().any(|frame| {
-        let range = reading.story.sentences[frame.sentence];
-        let lead: Vec<&str> = tokens[range.first..frame.first].iter().map(|token| token.text.as_str()).collect();
-        let then = matches!(lead.as_slice(), ["at", "the", "time" | "moment", "of", ..]) && lead.len() < LEAD;
-        let was = matches!(tokens[frame.first].text.as_str(), "was" | "were");
-        then && was && frame.who.is_none() && frame.act() == Some(Act::Hold) && frame.happened()
-    })
-}
-
-/// Fewer words stand before a verb of which nobody is the subject. [tokens]
-const LEAD: usize = 8;
 
 /// Whether the last that is told of the subject vehicle before the contact is that it "was yielding".
 fn yields_last(reading: &Reading<'_>) -> bool {

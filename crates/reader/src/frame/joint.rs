@@ -5,7 +5,7 @@ use super::parser::{Carry, Mention, Parser};
 use super::row::{another_finite, goes_on_behind_comma};
 use super::supposed::expects;
 use crate::chunk::{Article, Chunk, Joint, Placed};
-use crate::lexicon::{Form, Relation, Sense};
+use crate::lexicon::{Form, Progress, Relation, Sense};
 use crate::world::SUBJECT;
 use recrash_model::account::{Act, Kind, KindGroup};
 
@@ -124,10 +124,13 @@ impl Parser<'_> {
     fn seen_leaving(&self, joint: Joint, behind: &[Placed], carry: &Carry) -> Option<Mention> {
         let verb = behind.iter().map(|placed| &placed.chunk).find(|chunk| !matches!(chunk, Chunk::Word))?;
         let leaves = matches!(verb, Chunk::Verb(Sense::Act(Act::PullOut), Form::Ing));
-        let who = self.frames[carry.frame?].who.filter(|who| *who != SUBJECT && joint == Joint::While && leaves)?;
+        let last = &self.frames[carry.frame?];
+        let turns = matches!(last.sense, Sense::Act(Act::Turn) | Sense::Sided(Act::Turn, _))
+            || last.progress == Progress::Tried;
+        let who = last.who.filter(|who| *who != SUBJECT && joint == Joint::While && leaves && turns)?;
         let here = |frame: &&Frame| frame.sentence == self.sentence && frame.who == Some(SUBJECT);
         let mut own = self.frames.iter().filter(here);
-        let stops = own.any(|frame| matches!(frame.act(), Some(Act::Stop | Act::Slow | Act::Hold)));
+        let stops = own.any(|frame| matches!(frame.act(), Some(Act::Stop | Act::Hold)));
         let last = carry.last.clone().filter(|last| last.actor == who);
         last.filter(|_| stops && carry.subject.as_ref().is_some_and(|subject| subject.actor == SUBJECT))
     }

@@ -102,7 +102,9 @@ fn change_lanes(tokens: &mut [Token]) {
             _ => continue,
         };
         let lane = |token: &Token| matches!(token.text.as_str(), "lane" | "lanes");
-        let named = tokens[at + 2..].iter().take(LANE_WORDS).take_while(|token| token.text != ".").any(lane);
+        // "from autonomous to manual mode in lane two" leaves no lane.
+        let of_lane = |token: &Token| OF_LANES.contains(&token.text.as_str());
+        let named = tokens[at + 2..].iter().take(LANE_WORDS).find(|token| !of_lane(token)).is_some_and(lane);
         if tokens[at + 1].text == "from" && named {
             changes.clone_into(&mut tokens[at].text);
         }
@@ -131,6 +133,37 @@ fn name_aliases(tokens: &mut [Token]) {
         }
     }
 }
+
+/// Words that stand before the lane that is left.
+const OF_LANES: [&str; 27] = [
+    "the",
+    "a",
+    "its",
+    "his",
+    "their",
+    "left",
+    "right",
+    "leftmost",
+    "rightmost",
+    "far",
+    "middle",
+    "center",
+    "centre",
+    "inner",
+    "outer",
+    "inside",
+    "outside",
+    "adjacent",
+    "next",
+    "immediate",
+    "turn",
+    "travel",
+    "through",
+    "number",
+    "hand",
+    "2",
+    "1",
+];
 
 /// So many words a lane that is left may have: "the lane immediately to the left". [tokens]
 const LANE_WORDS: usize = 6;
@@ -161,7 +194,8 @@ fn turn_meanwhile(tokens: &mut [Token]) {
         let word = |ahead: usize| tokens.get(at + ahead).map_or("", |token| token.text.as_str());
         let (lead, is_clause) = match (word(0), word(1), word(2), word(3)) {
             ("during", ..) => (1, true),
-            ("midway" | "halfway", "through" | "into", ..) => (2, false),
+            ("while" | "still", "in", ..) => (2, true),
+            ("midway" | "halfway" | "partway", "through" | "into", ..) => (2, false),
             ("in", "the", "middle" | "midst", "of") => (4, false),
             _ => continue,
         };
@@ -175,16 +209,15 @@ fn turn_meanwhile(tokens: &mut [Token]) {
         let between: Vec<&str> = tokens[from + 1..end].iter().map(|token| token.text.as_str()).collect();
         let known =
             |word: &&str| matches!(*word, "left" | "right" | "hand" | "unprotected" | "protected" | "slow" | "wide");
-        // "the turn lane", "a turn signal".
-        let of_turn = tokens
-            .get(end + 1)
-            .is_some_and(|next| matches!(next.text.as_str(), "lane" | "lanes" | "signal" | "signals" | "pocket"));
+        // "the turn lane", "a left turn phase", "the left turn of the van".
+        let of_turn = tokens.get(end + 1).is_some_and(|next| OF_TURNS.contains(&next.text.as_str()));
         if !between.iter().all(known) || of_turn {
             continue;
         }
         let side = between.iter().copied().find(|word| matches!(*word, "left" | "right")).map(str::to_owned);
         if is_clause {
             "while".clone_into(&mut tokens[at].text);
+            tokens[at + 1..from].iter_mut().for_each(|token| "completely".clone_into(&mut token.text));
         } else {
             tokens[at..from].iter_mut().for_each(|token| "completely".clone_into(&mut token.text));
         }
@@ -195,6 +228,27 @@ fn turn_meanwhile(tokens: &mut [Token]) {
         }
     }
 }
+
+/// What a turn is part of the name of, or whose it is: "the left turn phase", "the right turn of the van".
+const OF_TURNS: [&str; 17] = [
+    "lane",
+    "lanes",
+    "only",
+    "pocket",
+    "pockets",
+    "bay",
+    "bays",
+    "signal",
+    "signals",
+    "phase",
+    "arrow",
+    "light",
+    "interval",
+    "movement",
+    "movements",
+    "of",
+    "by",
+];
 
 /// "Acme was proceeding straight", in a report of that company: its vehicle was.
 fn drive_as_company(tokens: &mut [Token]) {

@@ -79,8 +79,26 @@ fn enters_a_slip_lane(parser: &Parser<'_>, verb: &Spoken<'_>, carry: &Carry) -> 
 
 /// "attempted to avoid the collision": it braked, where no other word tells what it did.
 fn tries_to_avoid(parser: &Parser<'_>, verb: &Spoken<'_>, carry: &Carry) -> Option<Sense> {
-    const OTHERWISE: [&str; 9] =
-        ["swerv", "steer", "veer", "brak", "slow", "decelerat", "stop", "maneuver", "accelerat"];
+    const OTHERWISE: [&str; 18] = [
+        "swerv",
+        "steer",
+        "veer",
+        "brak",
+        "slow",
+        "decelerat",
+        "stop",
+        "maneuver",
+        "accelerat",
+        "turning",
+        "moving",
+        "changing",
+        "merging",
+        "pulling",
+        "nudging",
+        "reversing",
+        "honk",
+        "evasive",
+    ];
     let avoids = verb.sense == Sense::Other && verb.word(parser).starts_with("avoid");
     if !avoids || carry.progress != Some(Progress::Tried) || carry.negated {
         return None;

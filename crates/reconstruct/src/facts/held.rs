@@ -18,7 +18,7 @@ use crate::told::phase;
 use crate::told::rig::Rig;
 use crate::touch::opening::{self, DOOR_M};
 use recrash_metrics::contact::contact_geometry;
-use recrash_model::account::{Control as Said, ControlDevice, Kind, Obeyed, StandReason, Striker};
+use recrash_model::account::{Control as Said, ControlDevice, Kind, Obeyed, Origin, StandReason, Striker};
 use recrash_model::geometry::OrientedBox;
 use recrash_model::metrics::{Check, CheckKind, CheckResult};
 use recrash_model::rollout::{ActorTrack, Rollout, STEP_S};
@@ -187,7 +187,9 @@ pub(crate) fn facts(told: &Told, scenario: &Scenario, rollout: &Rollout) -> Vec<
         let road_rad = ego_track.states[0].heading;
         let keeps_lane = kind == CheckKind::CpMovement && told.keeps_its_lane();
         let parks_at_kerb = kind == CheckKind::CpMovement && told.parks_behind();
-        let way = Way { scenario, track, other, met, time_s: touch.time_s, keeps_lane, road_rad, parks_at_kerb };
+        let crosses = kind == CheckKind::CpMovement && matches!(told.origin, Origin::Cross { .. });
+        let way =
+            Way { scenario, track, other, met, time_s: touch.time_s, keeps_lane, road_rad, parks_at_kerb, crosses };
         let slides =
             kind == CheckKind::CpMovement && keeping::slides(track.kind, until_touched(rollout, track, touch.time_s));
         let check = movement::check(side, &way);

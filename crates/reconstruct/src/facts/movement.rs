@@ -71,6 +71,8 @@ pub(super) struct Way<'a> {
     pub(crate) road_rad: f64,
     /// It parks behind one that stands at the kerb.
     pub(crate) parks_at_kerb: bool,
+    /// It is told to come along a crossing road.
+    pub(crate) crosses: bool,
 }
 
 impl Way<'_> {
@@ -255,7 +257,8 @@ pub(super) fn check(side: &Side, way: &Way<'_>) -> Option<(String, CheckResult, 
         Movement::EnteringTraffic => {
             let (words, degrees) = bent();
             // Who comes along a crossing road enters the ego's straight across.
-            let across = way.slant_deg() >= ACROSS_DEG && !side.acts.iter().any(|doing| doing.act == Act::PullOut);
+            let pulls_out = side.acts.iter().any(|doing| doing.act == Act::PullOut);
+            let across = way.crosses && way.slant_deg() >= ACROSS_DEG && !pulls_out;
             let out = way.is_off_lanes(&way.track.states[0]) || way.stood() || across;
             (
                 out && (beside_m.abs() >= LEFT_LINE_M || degrees >= BENDS_DEG || across),

@@ -63,7 +63,10 @@ fn turns_in_before(clues: &Clues<'_>, account: &Account) -> Option<Origin> {
     let stands = told(&account.sv.state).is_some_and(ContactState::stands);
     let elsewhere = partner.lane.is_some() || clues.any(Relation::Beside) || partner.did(Act::Pass);
     let rear = has_zone(&account.sv, |zone| zone.is_rear());
-    (stands && !elsewhere && !rear && !account.sv.did(Act::Turn)).then_some(Origin::Cross { side: side.other() })
+    // Who turns off beside it touches the side on which it turns: with its trailer, or a rear wheel.
+    let cut_in = zone_side(account) == Some(side);
+    (stands && !elsewhere && !rear && !cut_in && !account.sv.did(Act::Turn))
+        .then_some(Origin::Cross { side: side.other() })
 }
 
 /// Where the words say nothing: by zones and movement columns, which tell front on rear and little else.

@@ -198,7 +198,7 @@ pub(super) fn turn_onto_its_street(reading: &Reading<'_>, actor: Actor) -> Optio
     let (number, side) = reading.before(actor).find_map(|(number, frame)| Some((number, turns(frame)?)))?;
     let street = street_behind(reading, number, &["onto"])?;
     let along = ["on", "along", "down", "up"];
-    let own = |number: usize| street_behind(reading, number, &along) == Some(street);
+    let own = |number: usize| street_behind(reading, number, &along).is_some_and(|own| is_one_street(&own, &street));
     let drives = |frame: &Frame| frame.act() == Some(Act::Follow);
     let same = reading.before(SUBJECT).any(|(number, frame)| drives(frame) && own(number));
     let (first, end) = reading.window(number);
@@ -217,7 +217,7 @@ pub(super) fn drives_on_another(reading: &Reading<'_>, actor: Actor) -> Option<S
     let features = &story_words(reading);
     let junction = features.contains(&"intersection") || reading.record.road.known() == Some(RoadType::Intersection);
     let (first, end) = reading.window(number);
-    (own != other && junction).then(|| reading.words(first, end))
+    (!is_one_street(&own, &other) && junction).then(|| reading.words(first, end))
 }
 
 /// The words of the story up to the contact.
@@ -252,14 +252,45 @@ fn is_date(word: &str) -> bool {
     DATES.contains(&word)
 }
 
+/// Words of a name that tell one part of a street from another.
+const DIRECTIONS: [&str; 16] = [
+    "north",
+    "south",
+    "east",
+    "west",
+    "northeast",
+    "northwest",
+    "southeast",
+    "southwest",
+    "n",
+    "s",
+    "e",
+    "w",
+    "ne",
+    "nw",
+    "se",
+    "sw",
+];
+
+/// Whether two names are of one street: "Alder Street" may be called Alder.
+fn is_one_street(one: &[&str], other: &[&str]) -> bool {
+    one.iter().zip(other).all(|(one, other)| one == other)
+}
+
+/// So many words of a street's name are held against another's.
+const STREET_WORDS: usize = 2;
+
 /// The name of a street behind one of these words, in the words of a frame.
-fn street_behind<'a>(reading: &'a Reading<'_>, number: usize, words: &[&str]) -> Option<&'a str> {
+fn street_behind<'a>(reading: &'a Reading<'_>, number: usize, words: &[&str]) -> Option<Vec<&'a str>> {
     let (first, end) = reading.window(number);
     let tokens = &reading.story.tokens[first..end];
     let at = tokens.iter().position(|token| words.contains(&token.text.as_str()))?;
     let bound = usize::from(tokens.get(at + 1).is_some_and(|next| next.text.ends_with("bound")));
-    let name = tokens.get(at + 1 + bound).filter(|name| name.capital)?.text.as_str();
-    (!is_date(name) && !name.contains("xxx") && !name.contains("redacted")).then_some(name)
+    let run = tokens[at + 1 + bound..].iter().take_while(|token| token.capital).map(|token| token.text.as_str());
+    // "West Elm Street" may be called Elm Street.
+    let name: Vec<&str> = run.filter(|word| !DIRECTIONS.contains(word)).take(STREET_WORDS).collect();
+    let hidden = |word: &&str| is_date(word) || word.contains("xxx") || word.contains("redacted");
+    (!name.is_empty() && !name.iter().any(|word| hidden(&word))).then_some(name)
 }
 
 /// "reversed out of an angled space", "out of a space in a parking lot": it stood across the way.
