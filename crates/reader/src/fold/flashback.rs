@@ -108,7 +108,7 @@ fn leads_to_the_contact(story: &Story, contacts: &Contacts, sentence: usize) -> 
         |word: &&str| matches!(*word, "contact" | "impact" | "collision" | "colliding" | "collided" | "impacting");
     // "contact information" is exchanged afterwards.
     let names = |rest: &[&str]| {
-        let at = rest.iter().take(4).position(|word| touch(&word));
+        let at = rest.iter().take(4).position(touch);
         at.is_some_and(|at| !matches!(rest.get(at + 1), Some(&("information" | "details" | "info"))))
     };
     let until = (1..words.len()).find(|&at| match words[at] {
@@ -128,7 +128,7 @@ fn leads_to_the_contact(story: &Story, contacts: &Contacts, sentence: usize) -> 
         behind && [frame.who, frame.object].into_iter().flatten().any(|actor| !one(Some(actor)))
     };
     let else_met = story.frames.iter().any(of_else);
-    leads && !words.iter().any(|word| goes_on(&word)) && !else_met && !is_aftermath(story, sentence)
+    leads && !words.iter().any(goes_on) && !else_met && !is_aftermath(story, sentence)
 }
 
 /// "It struck a van. It was coming to a stop before it made contact": who strikes then had only slowed.

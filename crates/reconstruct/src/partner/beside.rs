@@ -70,8 +70,11 @@ pub(super) fn line_y_m(told: &Told, staging: &Staging) -> Option<f64> {
         .or_else(|| told.strip_y_m(&staging.ground))
         .or_else(|| {
             let from_left_m = told.cp_from_left_m()?;
+            // Another lane than the ego's, where nobody tells which: its own is beside a corner, too.
+            let beside_ego = told.may_come_from_either() && told.sv.turning == Turning::No;
+            let from = if beside_ego { staging.sv.position } else { staging.cp.position };
             let lane_m = |from_left_m: f64| {
-                let left = (staging.cp.position, from_left_m);
+                let left = (from, from_left_m);
                 lanes::left_lane_m(&staging.ground, staging.cp_came, left).filter(|_| !told.back_straight)
             };
             // From the side on which a lane is, where none is told.

@@ -187,7 +187,9 @@ impl Told {
         );
         let drives = self.cp.state == ContactState::Moving && !elsewhere && self.comes_along_lanes();
         let place = matches!(self.place, PlaceKind::Street | PlaceKind::Intersection | PlaceKind::Highway);
-        let beside = self.is_at_kerb() || self.bus_lane().is_some() || self.edge.is_some() || self.pushed;
+        // Who passes may have squeezed by.
+        let passes = self.cp.acts.iter().any(Doing::is_pass);
+        let beside = self.is_at_kerb() || self.bus_lane().is_some() || self.edge.is_some() || self.pushed || passes;
         along && drives && place && !beside && self.cp.lane != Some(LaneWord::Opposing)
     }
 

@@ -290,7 +290,7 @@ fn street_behind<'a>(reading: &'a Reading<'_>, number: usize, words: &[&str]) ->
     // "West Elm Street" may be called Elm Street.
     let name: Vec<&str> = run.filter(|word| !DIRECTIONS.contains(word)).take(STREET_WORDS).collect();
     let hidden = |word: &&str| is_date(word) || word.contains("xxx") || word.contains("redacted");
-    (!name.is_empty() && !name.iter().any(|word| hidden(&word))).then_some(name)
+    (!name.is_empty() && !name.iter().any(hidden)).then_some(name)
 }
 
 /// "reversed out of an angled space", "out of a space in a parking lot": it stood across the way.
