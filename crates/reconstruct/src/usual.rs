@@ -35,3 +35,6 @@ pub(crate) const WALKS_MPS: f64 = 1.4;
 
 /// Usual speed in a turn. [m/s]
 pub(crate) const TURNS_MPS: f64 = 5.0;
+
+/// Who is narrower rides beside the driving lanes, and gets by beside somebody. [m]
+pub(crate) const NARROW_M: f64 = 1.2;

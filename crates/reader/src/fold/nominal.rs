@@ -5,17 +5,10 @@ use crate::frame::Frame;
 use crate::lexicon::{Lexicon, Meaning, Sense};
 use crate::world::{Actor, SUBJECT};
 use recrash_model::account::{Act, ActFact, LeftRight};
+use std::ops::Range;
 
 /// The road to which a slip lane leads is named within so many words behind it. [tokens]
 const ROAD_WITHIN: usize = 12;
-
-/// A turn, and the tokens that tell it.
-struct Turn {
-    act: Act,
-    side: Option<LeftRight>,
-    first: usize,
-    end: usize,
-}
 
 /// Whether somebody is told to have been in a turn, by no verb.
 pub(super) fn is_in_turn(reading: &Reading<'_>, actor: Actor) -> bool {
@@ -28,7 +21,7 @@ pub(super) fn add_turn(reading: &Reading<'_>, actor: Actor, all: &mut Vec<ActFac
     if all.iter().any(turns) {
         return;
     }
-    let Some((turn, number)) = turn_of(reading, actor) else { return };
+    let Some((words, number)) = turn_of(reading, actor) else { return };
     let waits = |fact: &ActFact| matches!(fact.act, Act::Stop | Act::Hold | Act::Slow) && !fact.after_contact;
     let before = all.iter().filter(|fact| !fact.after_contact).count();
     let at = all.iter().position(waits).unwrap_or(before);
@@ -37,19 +30,18 @@ pub(super) fn add_turn(reading: &Reading<'_>, actor: Actor, all: &mut Vec<ActFac
         waiting.step = waiting.step.max(1);
     }
     let step = all.get(at).filter(|fact| waits(fact)).map_or(number as u32, |fact| fact.step - 1);
-    let source = reading.words(turn.first, turn.end);
-    let (act, side) = (turn.act, turn.side);
+    let source = reading.words(words.start, words.end);
+    let (act, side) = (Act::Turn, Some(LeftRight::Right));
     let (after_contact, begun, done, after_other, manner) = (false, false, false, None, None);
     all.insert(at, ActFact { act, side, step, after_contact, begun, done, after_other, manner, source });
 }
 
-/// The turn in which somebody is told to have been, and the frame with which that is told.
-fn turn_of(reading: &Reading<'_>, actor: Actor) -> Option<(Turn, usize)> {
+/// The words for the turn in which somebody is told to have been, and the frame with which that is told.
+fn turn_of(reading: &Reading<'_>, actor: Actor) -> Option<(Range<usize>, usize)> {
     let until = reading.until().min(reading.story.tokens.len());
     (0..until).find_map(|at| {
-        let turn = slip_lane(reading, at).filter(|_| actor == SUBJECT)?;
-        let number = told_with(reading, actor, at)?;
-        Some((turn, number))
+        let words = slip_lane(reading, at).filter(|_| actor == SUBJECT)?;
+        Some((words, told_with(reading, actor, at)?))
     })
 }
 
@@ -77,7 +69,7 @@ fn is_of_others(reading: &Reading<'_>, at: usize) -> bool {
 }
 
 /// "in the slip lane from southbound Elm Street": where traffic keeps right, in a turn to the right. Onto a highway it is a ramp.
-fn slip_lane(reading: &Reading<'_>, at: usize) -> Option<Turn> {
+fn slip_lane(reading: &Reading<'_>, at: usize) -> Option<Range<usize>> {
     let tokens = &reading.story.tokens;
     let word = |at: usize| tokens.get(at).map_or("", |token| token.text.as_str());
     if !matches!(word(at), "in" | "on" | "within" | "inside") {
@@ -91,5 +83,5 @@ fn slip_lane(reading: &Reading<'_>, at: usize) -> Option<Turn> {
     let mut clause = clause.collect::<Vec<_>>().into_iter();
     let ramp = clause.any(|word| matches!(word, "highway" | "freeway" | "interstate" | "ramp"));
     let slips = word(slip) == "slip" && matches!(word(slip + 1), "lane" | "lanes");
-    (slips && !ramp).then_some(Turn { act: Act::Turn, side: Some(LeftRight::Right), first: at, end })
+    (slips && !ramp).then_some(at..end)
 }

@@ -4,7 +4,7 @@ use crate::told::crash::Told;
 use crate::told::doing::Doing;
 use crate::told::layout::strip_of;
 use crate::told::side::Turning;
-use crate::usual::{LANE_M, STANDS_MPS, TIGHTEST_M, WHEELED_M};
+use crate::usual::{LANE_M, NARROW_M, STANDS_MPS, TIGHTEST_M, WHEELED_M};
 use recrash_model::account::{ContactState, Origin};
 use recrash_model::geometry::Vec2;
 use recrash_model::kinds::PartnerKind;
@@ -26,9 +26,6 @@ const NEARS_S: f64 = 2.0;
 
 /// Between lanes somebody who leaves its own is at more than this to them. [rad]
 const CHANGES_RAD: f64 = 0.04;
-
-/// Who is narrower rides beside the driving lanes too. [m]
-pub(super) const NARROW_M: f64 = 1.2;
 
 pub(super) const fn is_for_narrow(kind: StripKind) -> bool {
     matches!(kind, StripKind::Bike | StripKind::Shoulder)

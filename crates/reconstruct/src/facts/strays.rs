@@ -1,12 +1,12 @@
 //! Whether somebody strays: goes another way than is told, or than anybody drives.
 
 use crate::facts::contact::first_touch;
-use crate::facts::keeping::{self, ABSURD, NARROW_M, is_for_narrow};
+use crate::facts::keeping::{self, ABSURD, is_for_narrow};
 use crate::facts::movement;
 use crate::facts::seen::Seen;
 use crate::told::crash::Told;
 use crate::told::layout::strip_of;
-use crate::usual::STANDS_MPS;
+use crate::usual::{NARROW_M, STANDS_MPS};
 use recrash_model::account::{Origin, Striker};
 use recrash_model::geometry::{OrientedBox, Vec2};
 use recrash_model::kinds::PartnerKind;

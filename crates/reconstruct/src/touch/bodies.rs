@@ -128,7 +128,7 @@ const STRAIGHT_RAD: f64 = 0.15;
 /// Of an oncoming partner, that the ego, which turns, has not come to its lane.
 const BEFORE_LANE: u32 = 3;
 
-/// Of who changes lanes by a column alone, and runs into a rear corner, that it does not come to the line.
+/// Of who changes lanes by a column alone, and touches a told side, that it does not come to the line.
 const STAYS_IN_LANE: u32 = 2;
 
 /// Of who has a signal or a sign on the crossing road, that it does not come along the lanes that lead there.
@@ -162,7 +162,7 @@ const BESIDE_M: f64 = 2.4;
 const LATE: u32 = 1;
 const EARLY_RAD: f64 = 0.6;
 
-/// Who follows an ego through its turn does so on its line, or beside that, on the touched side first. [m]
+/// Who follows an ego through its turn does so on its line, or beside that on the touched side. [m]
 const FOLLOWS_BESIDE_M: [f64; 3] = [0.0, 0.6, 1.0];
 
 fn follows_beside(told: &Told) -> impl Iterator<Item = f64> + use<> {

@@ -8,7 +8,7 @@ use crate::told::zones::side_of;
 use crate::touch::boxes::velocity;
 use crate::touch::headings::sign;
 use crate::touch::lanes::turn_m;
-use crate::usual::LANE_M;
+use crate::usual::{LANE_M, NARROW_M};
 use recrash_model::account::{ContactState, CrashType, Origin, Striker};
 use recrash_model::geometry::{Pose, Vec2};
 use recrash_model::math;
@@ -135,8 +135,8 @@ impl Told {
         self.comes_along_kerb() && self.passes_from_behind() && ground.stands_m > 0.0 && turned > SWINGS_OUT_RAD
     }
 
-    /// Whether a partner of which a column alone tells that it changed lanes, and that runs into a rear corner, is yet well within the ego's
-    /// lane.
+    /// Whether a partner of which a column alone tells that it changed lanes, and that touches the ego on a told side, is yet well within the
+    /// ego's lane.
     pub(super) fn stays_in_lane(&self, ground: &Ground, cp: Pose) -> bool {
         let changes = matches!(self.cp.movement, Some(Movement::ChangingLanes)) && self.cp.aside.is_none();
         let told =
@@ -155,9 +155,6 @@ impl Told {
         self.stands_beside(false) && (askew || ground.is_in_lanes(cp, 0.0, 0.0))
     }
 }
-
-/// Who is narrower gets by beside somebody. [m]
-const NARROW_M: f64 = 1.2;
 
 /// Who is at the line has its middle no farther from that. [m]
 const TO_LINE_M: f64 = 0.3;
