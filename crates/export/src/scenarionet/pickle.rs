@@ -55,6 +55,7 @@ impl Value {
             Self::Text(text) => write_text(text, to),
             Self::Integer(number) => write_integer(*number, to),
             Self::Number(number) => {
+                debug_assert!(number.is_finite(), "a number that is none");
                 to.push(b'G');
                 to.extend(number.to_be_bytes());
             }
@@ -79,6 +80,7 @@ impl Value {
                 }
             }
             Self::Floats(numbers, columns) => {
+                debug_assert!(numbers.iter().all(|number| number.is_finite()), "a row with a number that is none");
                 let shape = match columns {
                     0 => vec![numbers.len()],
                     columns => vec![numbers.len() / columns, *columns],
