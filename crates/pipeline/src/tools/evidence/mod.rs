@@ -93,7 +93,7 @@ struct TestFacts {
     cause: Option<&'static str>,
     preventability: Option<&'static str>,
     met: Option<bool>,
-    /// Whether the ego brakes harder than tyres let a vehicle.
+    /// Whether the ego, brought into the situation, brakes harder than tyres let a vehicle.
     beyond_tyres: Option<bool>,
     #[serde(skip)]
     outcome: Option<TestOutcome>,
@@ -248,7 +248,7 @@ fn run(bench: &Bench, files: &mut Files, progress: &dyn Progress) -> Result<Vec<
                 facts.verdict = if run.failed() { TestVerdict::Failed } else { TestVerdict::Passed }.label();
                 facts.rollout = Some(name);
                 facts.met = outcome.met;
-                facts.beyond_tyres = Some(run.brakes_beyond_tyres());
+                facts.beyond_tyres = Some(outcome.met != Some(false) && run.brakes_beyond_tyres());
                 facts.cause = outcome.cause.map(|cause| cause.label());
                 facts.preventability = outcome.bracket().map(|bracket| bracket.label());
                 facts.outcome = Some(outcome);
