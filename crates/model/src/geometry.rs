@@ -168,12 +168,17 @@ impl OrientedBox {
     pub fn overlaps(&self, other: &Self) -> bool {
         let d = other.centre - self.centre;
         let reach = self.radius() + other.radius();
-        d.length_squared() <= reach * reach && self.axis_overlaps(other).into_iter().all(|overlap| overlap >= 0.0)
+        if d.length_squared() > reach * reach {
+            return false;
+        }
+        let [along, across, along_other, across_other] = self.axis_overlaps(other);
+        along >= 0.0 && across >= 0.0 && along_other >= 0.0 && across_other >= 0.0
     }
 
     /// How far one of the boxes would have to move for them to be apart, 0 where they are. [m]
     pub fn depth(&self, other: &Self) -> f64 {
-        self.axis_overlaps(other).into_iter().fold(f64::INFINITY, f64::min).max(0.0)
+        let [along, across, along_other, across_other] = self.axis_overlaps(other);
+        along.min(across).min(along_other).min(across_other).max(0.0)
     }
 
     /// By how much their shadows overlap on the two axes of each box; negative where they are apart. [m]

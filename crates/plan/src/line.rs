@@ -27,6 +27,9 @@ pub fn lateral_target(start_t_m: f64, moves: &[LateralMove], time_s: f64) -> (f6
 
 /// The angle to the lane, positive to the left, at which somebody at this speed moves sideways at this rate. [rad]
 pub fn drift(rate_mps: f64, speed_mps: f64, greatest_rad: f64) -> f64 {
+    if rate_mps == 0.0 {
+        return -rate_mps;
+    }
     math::asin((-rate_mps / speed_mps.max(SLOW_MPS)).clamp(-1.0, 1.0)).clamp(-greatest_rad, greatest_rad)
 }
 

@@ -65,8 +65,17 @@ impl<'a> Motion<'a> {
     }
 
     fn outline(&self, time_s: f64) -> OrientedBox {
+        let (pose, rate) = self.along_lane(time_s);
+        self.outline_at(time_s, pose, rate)
+    }
+
+    /// Where its centre is, with the heading of its lane, and how fast it moves to the right of that. [m/s]
+    fn along_lane(&self, time_s: f64) -> (Pose, f64) {
         let (t, rate) = self.offset(time_s);
-        let pose = self.path.pose(self.start_m + self.driven(time_s), t);
+        (self.path.pose(self.start_m + self.driven(time_s), t), rate)
+    }
+
+    fn outline_at(&self, time_s: f64, pose: Pose, rate: f64) -> OrientedBox {
         let drift = drift(rate, self.alone.speed(time_s), self.plan.greatest_drift_rad);
         let pose = Pose { heading: pose.heading + drift, ..pose };
         OrientedBox::new(pose, 2.0 * self.plan.half_length_m, 2.0 * self.plan.half_width_m)
@@ -101,48 +110,66 @@ pub struct Meeting {
     pub kind: Option<CollisionKind>,
 }
 
-/// Lets both drive and tells how they meet between two times.
-pub fn rehearse(ego: &Motion, partner: &Motion, from_s: f64, until_s: f64) -> Option<Meeting> {
-    let at_start = (ego.outline(0.0), partner.outline(0.0));
-    let mut closest: Option<(f64, f64)> = None;
-    let steps = ((until_s - from_s) / STEP_S).ceil().clamp(0.0, 2000.0) as u32;
-    for step in 0..=steps {
-        let time_s = from_s.max(0.0) + f64::from(step) * STEP_S;
-        let (a, b) = (ego.outline(time_s), partner.outline(time_s));
-        if a.centre.distance(b.centre) > FAR_M {
-            continue;
+/// An ego between two times, which any number of partners can meet.
+pub struct Rehearsal<'a> {
+    ego: &'a Motion<'a>,
+    at_start: OrientedBox,
+    /// When, and its outline then. [s]
+    outlines: Vec<(f64, OrientedBox)>,
+}
+
+impl<'a> Rehearsal<'a> {
+    /// Of an ego between these times. [s]
+    pub fn new(ego: &'a Motion<'a>, from_s: f64, until_s: f64) -> Self {
+        let steps = ((until_s - from_s) / STEP_S).ceil().clamp(0.0, 2000.0) as u32;
+        let times = (0..=steps).map(|step| from_s.max(0.0) + f64::from(step) * STEP_S);
+        Self { ego, at_start: ego.outline(0.0), outlines: times.map(|time_s| (time_s, ego.outline(time_s))).collect() }
+    }
+
+    /// Lets both drive and tells how they meet.
+    pub fn with(&self, partner: &Motion) -> Option<Meeting> {
+        let mut closest: Option<(f64, f64, &OrientedBox)> = None;
+        for (time_s, outline) in &self.outlines {
+            let (pose, rate) = partner.along_lane(*time_s);
+            if outline.centre.distance(pose.position) > FAR_M {
+                continue;
+            }
+            let other = partner.outline_at(*time_s, pose, rate);
+            let gap = if outline.overlaps(&other) { 0.0 } else { outline.nearest_points(&other).2 };
+            if closest.is_none_or(|(least, ..)| gap < least) {
+                closest = Some((gap, *time_s, outline));
+            }
+            if gap <= 0.0 {
+                break;
+            }
         }
-        let gap = if a.overlaps(&b) { 0.0 } else { a.nearest_points(&b).2 };
-        if closest.is_none_or(|(least, _)| gap < least) {
-            closest = Some((gap, time_s));
-        }
-        if gap <= 0.0 {
-            break;
+        closest.map(|(gap_m, time_s, outline)| self.meeting(partner, gap_m, time_s, outline))
+    }
+
+    fn meeting(&self, partner: &Motion, gap_m: f64, time_s: f64, a: &OrientedBox) -> Meeting {
+        let b = partner.outline(time_s);
+        let (on_ego, on_partner) = match ConvexPolygon::overlap(a, &b).mean_corner() {
+            Some(middle) => (middle, middle),
+            None => {
+                let (on_ego, on_partner, _) = a.nearest_points(&b);
+                (on_ego, on_partner)
+            }
+        };
+        let (ego_zone, partner_zone) = (ContactZone::at(a, on_ego), ContactZone::at(&b, on_partner));
+        let turned =
+            |from: &OrientedBox, to: &OrientedBox| math::atan2(from.axis.cross(to.axis), from.axis.dot(to.axis));
+        Meeting {
+            time_s,
+            gap_m,
+            ego_zone,
+            partner_zone,
+            ego_turned: turned(&self.at_start, a),
+            partner_turned: turned(&partner.outline(0.0), &b),
+            ego_nose_m: self.ego.start_m + self.ego.driven(time_s) + self.ego.plan.half_length_m,
+            partner_shifted_m: (partner.offset(time_s).0 - partner.plan.start_t_m).abs(),
+            kind: kind_of(a, ego_zone, &b, partner_zone),
         }
     }
-    let (gap_m, time_s) = closest?;
-    let moment = time_s;
-    let (a, b) = (ego.outline(moment), partner.outline(moment));
-    let (on_ego, on_partner) = match ConvexPolygon::overlap(&a, &b).mean_corner() {
-        Some(middle) => (middle, middle),
-        None => {
-            let (on_ego, on_partner, _) = a.nearest_points(&b);
-            (on_ego, on_partner)
-        }
-    };
-    let (ego_zone, partner_zone) = (ContactZone::at(&a, on_ego), ContactZone::at(&b, on_partner));
-    let turned = |from: &OrientedBox, to: &OrientedBox| math::atan2(from.axis.cross(to.axis), from.axis.dot(to.axis));
-    Some(Meeting {
-        time_s,
-        gap_m,
-        ego_zone,
-        partner_zone,
-        ego_turned: turned(&at_start.0, &a),
-        partner_turned: turned(&at_start.1, &b),
-        ego_nose_m: ego.start_m + ego.driven(moment) + ego.plan.half_length_m,
-        partner_shifted_m: (partner.offset(moment).0 - partner.plan.start_t_m).abs(),
-        kind: kind_of(&a, ego_zone, &b, partner_zone),
-    })
 }
 
 fn kind_of(
@@ -196,7 +223,7 @@ mod tests {
         let conflict = ego.conflict(&other, 2.0, 2.0).expect("they cross");
         let ego = motion(&ego, conflict.s_a - 30.0, SPEED);
         let partner = motion(&other, conflict.s_b - 30.0 - gap_s * SPEED, SPEED);
-        rehearse(&ego, &partner, 0.0, 6.0).expect("they come near")
+        Rehearsal::new(&ego, 0.0, 6.0).with(&partner).expect("they come near")
     }
 
     #[test]
@@ -224,7 +251,7 @@ mod tests {
         let network = network();
         let path = path(&network, Approach::Same);
         let slow = motion(&path, 20.0, 5.0);
-        let meeting = rehearse(&motion(&path, 5.0, SPEED), &slow, 0.0, 6.0).expect("they come near");
+        let meeting = Rehearsal::new(&motion(&path, 5.0, SPEED), 0.0, 6.0).with(&slow).expect("they come near");
         assert_eq!(meeting.kind, Some(CollisionKind::RearEndByEgo));
         // 15 m apart, 4 m of cars, 5 m/s faster: 2.2 s.
         assert!((meeting.time_s - 2.2).abs() <= 0.05 + 1e-9, "{meeting:?}");

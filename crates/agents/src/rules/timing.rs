@@ -1,7 +1,7 @@
 //! Lanes and timing: rehearses every lane plan of a staging at many starts, and takes the start whose meeting is most
 //! like the told one.
 
-use super::rehearsal::{Meeting, Motion, holds_speed, rehearse};
+use super::rehearsal::{Meeting, Motion, Rehearsal, holds_speed};
 use super::retry::{Aim, Plan as Attempt, Tried};
 use super::staging::{ConflictKind, Ground};
 use recrash_model::kinds::PartnerKind;
@@ -178,11 +178,12 @@ fn time_paths(task: &Task, course: &Course, plan: &Attempt) -> Option<Timing> {
     // Who sets off, or slows for a bend, arrives later than the arrival gap says, which counts with the target speed.
     let lost_s = meets_s - motion(0.0).driven(meets_s) / task.partner_mps;
     let lost_s = (lost_s * 100.0).round().max(0.0) / 100.0;
+    let rehearsal = Rehearsal::new(&ego, from_s, until_s);
     let count = (2.0 * WIDEST_GAP_S / GAP_STEP_S).round() as usize;
     let tries: Vec<(f64, Option<Meeting>)> = (0..=count)
         .map(|n| {
             let gap_s = -WIDEST_GAP_S - lost_s + GAP_STEP_S * n as f64;
-            (gap_s, rehearse(&ego, &motion(gap_s), from_s, until_s))
+            (gap_s, rehearsal.with(&motion(gap_s)))
         })
         .collect();
     let (start, score) = choose(task, course, plan, &tries, -lost_s, 0.3)?;
@@ -254,13 +255,14 @@ fn time_sideways(task: &Task, course: &Course, plan: &Attempt) -> Option<Timing>
         let start_m = partner_place + shift_m - partner_mps * meets_s;
         Motion::partner(&course.partner.path, does, vec![lateral], start_m, partner_mps, until_s)
     };
+    let rehearsal = Rehearsal::new(&ego, lateral.start_s - 1.0, until_s);
     let count = (2.0 * WIDEST_SHIFT_M / SHIFT_STEP_M).round() as usize;
     // As the start is written in the scenario: ahead of the ego at time 0.
     let ahead = |shift_m: f64| motion(shift_m).start_m - task.ego_start_m;
     let tries: Vec<(f64, Option<Meeting>)> = (0..=count)
         .map(|n| {
             let shift_m = -WIDEST_SHIFT_M + SHIFT_STEP_M * n as f64;
-            let meeting = rehearse(&ego, &motion(shift_m), lateral.start_s - 1.0, until_s);
+            let meeting = rehearsal.with(&motion(shift_m));
             // Where the two come closest elsewhere, on the way out say, it is another conflict.
             (ahead(shift_m), meeting.filter(|meeting| (meeting.time_s - meets_s).abs() < 3.0))
         })
