@@ -205,10 +205,34 @@ fn side_of(reading: &Reading<'_>, actor: Actor, frame: &Frame, act: Act) -> Opti
         _ => None,
     };
     let entered = || if act == Act::LaneChange { side_of_lane_entered(reading, frame) } else { None };
-    let side = if sided(act) { told().or_else(entered) } else { None };
+    let signalled = || if moves_over(act) { side_signalled(reading, frame) } else { None };
+    let side = if sided(act) { told().or_else(entered).or_else(signalled) } else { None };
     side.or_else(|| into_turn_lane(reading, actor, frame, act))
         .or_else(|| if act == Act::Turn { turn_lane() } else { None })
         .or_else(|| turned_by_column(reading, actor, act))
+}
+
+/// Acts that lead over to a side of the way.
+const fn moves_over(act: Act) -> bool {
+    matches!(act, Act::LaneChange | Act::Drift | Act::PullOut)
+}
+
+/// "put on its left turn signal and began to change lanes": the side for which it had signalled, with nothing done between.
+fn side_signalled(reading: &Reading<'_>, frame: &Frame) -> Option<LeftRight> {
+    let (tokens, frames) = (&reading.story.tokens, &reading.story.frames);
+    let word = |at: usize| tokens[at].text.as_str();
+    let first = reading.story.sentences[frame.sentence.saturating_sub(1)].first;
+    let lamp = |at: &usize| matches!(word(*at), "signal" | "indicator" | "blinker" | "blinkers" | "indicators");
+    let at = (first + 2..frame.first).rev().find(lamp)?;
+    let side = (at - 2..at).find_map(|at| match word(at) {
+        "left" => Some(LeftRight::Left),
+        "right" => Some(LeftRight::Right),
+        _ => None,
+    })?;
+    let of_signal = frames.iter().rfind(|other| other.first <= at)?;
+    let between = |other: &Frame| other.first > at && other.first < frame.first && other.act().is_some();
+    let own = of_signal.who == frame.who && of_signal.sense == Sense::Other && of_signal.happened();
+    (own && !frames.iter().any(between)).then_some(side)
 }
 
 /// "moved right, and then recentered itself": back to the other side.
@@ -375,11 +399,14 @@ fn act_of(reading: &Reading<'_>, number: usize, frame: &Frame, pushed: bool) -> 
         Act::Enter if enters_a_lane(reading, number, frame) => Act::LaneChange,
         Act::Follow | Act::SetOff | Act::Drift if comes_out => Act::PullOut,
         Act::Follow if goes_on_from_a_stand(reading, number, frame, &words) => Act::SetOff,
+        Act::Follow if sets_off_at_green(reading, number, frame) => Act::SetOff,
         Act::Follow if sets_off_with_subject(reading, frame, &words) => Act::SetOff,
         // Who came along and was "beginning to enter" did not stand.
         Act::SetOff if words.chars().take(24).collect::<String>().contains("enter") && moved() == Some(Act::Follow) => {
             Act::Enter
         }
+        // "It drove up on green and began to proceed through the junction": so it went on.
+        Act::SetOff if begins_to_go_on(reading, number, frame) => Act::Follow,
         // "shifted into reverse and began to accelerate": still backwards.
         Act::SetOff if gains_speed(reading, number, frame) && moved() == Some(Act::Reverse) => Act::Reverse,
         Act::SetOff if gains_speed(reading, number, frame) => Act::Accelerate,
@@ -446,6 +473,22 @@ pub(super) fn gains_speed(reading: &Reading<'_>, number: usize, frame: &Frame) -
     // "It reversed, and then began to accelerate forward".
     let forward = last == Some(Act::Reverse) && says((frame.end + 2).min(tokens.len()), "forward");
     frame.act() == Some(Act::SetOff) && says(frame.end, "accelerat") && !forward && last.is_some_and(moves)
+}
+
+/// Whether who drove along began to proceed "straight" or "through", and nothing told since had made it stand.
+pub(super) fn begins_to_go_on(reading: &Reading<'_>, number: usize, frame: &Frame) -> bool {
+    let word = |at: usize| reading.story.tokens.get(at).map_or("", |token| token.text.as_str());
+    let goes =
+        (frame.first..frame.end).any(|at| ["proceed", "continu", "driv"].iter().any(|stem| word(at).starts_with(stem)));
+    let on = goes && (word(frame.end - 1) == "straight" || matches!(word(frame.end), "straight" | "through"));
+    let waits = |(other, before): (usize, &Frame)| other < number && before.sense == Sense::Yield && before.happened();
+    let waited = reading.before(SUBJECT).any(waits);
+    // Of others less is told: they may have stood.
+    frame.who == Some(SUBJECT)
+        && on
+        && !waited
+        && !turned_green(reading, frame)
+        && last_act(reading, number, frame, |_| true) == Some(Act::Follow)
 }
 
 /// "It turned, and yielded to a man": who gives way to somebody and had not slowed since it drove has slowed for that.
@@ -584,17 +627,36 @@ fn goes_on_from_a_stand(reading: &Reading<'_>, number: usize, frame: &Frame, wor
     !goes_on && frame.sense != Sense::Approach && stood(last)
 }
 
+/// "It slowed for a red light. After that had turned green it was moving forward": it had waited for that.
+pub(super) fn sets_off_at_green(reading: &Reading<'_>, number: usize, frame: &Frame) -> bool {
+    let words = &reading.story.tokens[frame.first..frame.end];
+    let forward = words.iter().any(|token| token.text == "forward") && turned_green(reading, frame);
+    let slowed = frame.who.filter(|_| forward).and_then(|who| {
+        reading
+            .before(who)
+            .filter(|(before, frame)| *before < number && frame.act().is_some() && frame.happened())
+            .last()
+    });
+    let red = |(number, frame): (usize, &Frame)| {
+        let (first, end) = reading.window(number);
+        let red = reading.story.tokens[first..end].iter().any(|token| token.text == "red");
+        frame.act() == Some(Act::Slow) && red
+    };
+    frame.act() == Some(Act::Follow) && slowed.is_some_and(red)
+}
+
 /// "Once the light turned green, it began to proceed, and a car behind it proceeded forward": so did that.
 fn sets_off_with_subject(reading: &Reading<'_>, frame: &Frame, words: &str) -> bool {
     let Some(who) = frame.who.filter(|who| *who != SUBJECT) else { return false };
     let mut relations = reading.story.world.actors[who].relations.iter();
-    let sets_off = |other: &Frame| {
-        other.who == Some(SUBJECT) && other.sentence == frame.sentence && other.act() == Some(Act::SetOff)
+    let sets_off = |(number, other): (usize, &Frame)| {
+        let goes = other.act() == Some(Act::SetOff) || sets_off_at_green(reading, number, other);
+        other.sentence == frame.sentence && goes
     };
     ["proceed", "start", "beg", "mov"].iter().any(|start| words.starts_with(start))
         && relations.any(|(relation, sentence)| *relation == Relation::Behind && *sentence == frame.sentence)
         && turned_green(reading, frame)
-        && reading.story.frames.iter().any(sets_off)
+        && reading.before(SUBJECT).any(sets_off)
 }
 
 /// "passed a parked trailer", "passed behind the van".
@@ -626,11 +688,22 @@ pub(super) fn not_done(reading: &Reading<'_>, number: usize, frame: &Frame) -> O
         Some(Act::RunStop)
     } else if named.iter().any(|(feature, ..)| *feature == RoadFeature::Signal) {
         Some(Act::RunRed)
-    } else if frame.sense == Sense::Yield {
+    } else if frame.sense == Sense::Yield || comes_out_so(reading, frame) {
         Some(Act::FailToYield)
     } else {
         None
     }
+}
+
+/// "A van left a lot without stopping", "turned out of an alley without first stopping": where nothing but the road calls for a stop.
+fn comes_out_so(reading: &Reading<'_>, frame: &Frame) -> bool {
+    let comes = |other: &Frame| {
+        let out = matches!(other.out_of, Some(Spot::Driveway | Spot::Stall | Spot::SideStreet));
+        other.who == frame.who && other.sentence == frame.sentence && other.happened() && out
+    };
+    frame.act() == Some(Act::Stop)
+        && frame.who.is_some_and(|who| who != SUBJECT)
+        && reading.story.frames.iter().any(comes)
 }
 
 /// "rolled back from the light, and failed to stop": it did not stop going backwards, and ran nothing.
@@ -662,7 +735,9 @@ fn to_lane(reading: &Reading<'_>, actor: Actor, frame: &Frame, act: Act) -> Opti
     if !matches!(act, Act::LaneChange | Act::Drift) {
         return None;
     }
-    let own = reading.story.world.actors[actor].lane.map(|(lane, ..)| lane);
+    // A lane that is told behind it is not the one that it left.
+    let own =
+        reading.story.world.actors[actor].lane.filter(|(_, first, _)| *first < frame.first).map(|(lane, ..)| lane);
     let into = frame.lane.map(|(lane, ..)| lane);
     match (own, into) {
         (Some(LaneWord::Left), Some(LaneWord::Center)) => Some(LeftRight::Right),

@@ -493,7 +493,9 @@ impl Parser<'_> {
     /// between vehicles in the left lane", "passing traffic in the center lane", "a parking spot in the curb lane", "in the lane adjacent to the rightmost, bus-only lane".
     fn is_lane_of_others(&self, first: usize) -> bool {
         let text = |back: usize| first.checked_sub(back).map_or("", |at| self.tokens[at].text.as_str());
-        let article = usize::from(text(1) == "the");
+        // "oncoming traffic in the following left lane".
+        let told = usize::from(matches!(text(1), "following" | "other" | "nearest" | "closest" | "respective"));
+        let article = told + usize::from(text(1 + told) == "the");
         let (before, noun, by) = (text(1 + article), text(2 + article), text(3 + article));
         let between_them = by == "between" && ["vehicles", "cars"].contains(&noun);
         let passing = noun == "traffic" && ["passing", "cross", "oncoming"].contains(&by);
