@@ -2,15 +2,15 @@
 
 use super::Reading;
 use super::across::{begins, is_behind_begin};
+use super::sides::{back_to_the_middle, lane_entered, side_of};
 use super::speeds::is_of_last_contact;
 use super::{entry, flashback, nominal};
 use crate::chunk::{Joint, Spot};
-use crate::frame::{Frame, sided};
+use crate::frame::Frame;
 use crate::lexicon::{Form, Lexicon, Progress, Relation, Sense};
 use crate::token::Token;
 use crate::world::{Actor, SUBJECT};
-use recrash_model::account::{Account, Act, ActFact, Kind, KindGroup, LaneWord, LeftRight, Manner, RoadFeature};
-use recrash_model::template::Movement;
+use recrash_model::account::{Account, Act, ActFact, Kind, KindGroup, LeftRight, Manner, RoadFeature};
 
 /// What somebody did, in order; the same act told twice in a row once.
 pub(super) fn acts(reading: &Reading<'_>, actor: Actor) -> Vec<ActFact> {
@@ -35,7 +35,7 @@ pub(super) fn acts(reading: &Reading<'_>, actor: Actor) -> Vec<ActFact> {
             continue;
         }
         let side =
-            side_of(reading, actor, frame, act).or_else(|| back_to_the_middle(reading, frame, act, &all)).or_else(
+            side_of(reading, actor, number, act).or_else(|| back_to_the_middle(reading, frame, act, &all)).or_else(
                 || all.last().and_then(|out| out.side).filter(|_| act == Act::Pass && went_by(reading, number, frame)),
             );
         let after_contact = reading.is_after(number);
@@ -193,75 +193,6 @@ fn with_contact(reading: &Reading<'_>, actor: Actor, all: &mut Vec<ActFact>) {
     }
     let fact = ActFact { manner: Some(manner), ..plain(reading, Act::Follow, number) };
     all.insert(0, fact);
-}
-
-/// To which side an act goes: as told with it, else by the lane that it leads into or begins in, else by the column.
-fn side_of(reading: &Reading<'_>, actor: Actor, frame: &Frame, act: Act) -> Option<LeftRight> {
-    let told =
-        || frame.side.or_else(|| to_lane(reading, actor, frame, act)).or_else(|| to_that_lane(reading, frame, act));
-    let turn_lane = || match reading.story.world.actors[actor].lane?.0 {
-        LaneWord::LeftTurn => Some(LeftRight::Left),
-        LaneWord::RightTurn => Some(LeftRight::Right),
-        _ => None,
-    };
-    let entered = || if act == Act::LaneChange { side_of_lane_entered(reading, frame) } else { None };
-    let signalled = || if moves_over(act) { side_signalled(reading, frame) } else { None };
-    let side = if sided(act) { told().or_else(entered).or_else(signalled) } else { None };
-    side.or_else(|| into_turn_lane(reading, actor, frame, act))
-        .or_else(|| if act == Act::Turn { turn_lane() } else { None })
-        .or_else(|| turned_by_column(reading, actor, act))
-}
-
-/// Acts that lead over to a side of the way.
-const fn moves_over(act: Act) -> bool {
-    matches!(act, Act::LaneChange | Act::Drift | Act::PullOut)
-}
-
-/// "put on its left turn signal and began to change lanes": the side for which it had signalled, with nothing done between.
-fn side_signalled(reading: &Reading<'_>, frame: &Frame) -> Option<LeftRight> {
-    let (tokens, frames) = (&reading.story.tokens, &reading.story.frames);
-    let word = |at: usize| tokens[at].text.as_str();
-    let first = reading.story.sentences[frame.sentence.saturating_sub(1)].first;
-    let lamp = |at: &usize| matches!(word(*at), "signal" | "indicator" | "blinker" | "blinkers" | "indicators");
-    let at = (first + 2..frame.first).rev().find(lamp)?;
-    let side = (at - 2..at).find_map(|at| match word(at) {
-        "left" => Some(LeftRight::Left),
-        "right" => Some(LeftRight::Right),
-        _ => None,
-    })?;
-    let of_signal = frames.iter().rfind(|other| other.first <= at)?;
-    let between = |other: &Frame| other.first > at && other.first < frame.first && other.act().is_some();
-    let own = of_signal.who == frame.who && of_signal.sense == Sense::Other && of_signal.happened();
-    (own && !frames.iter().any(between)).then_some(side)
-}
-
-/// "moved right, and then recentered itself": back to the other side.
-fn back_to_the_middle(reading: &Reading<'_>, frame: &Frame, act: Act, before: &[ActFact]) -> Option<LeftRight> {
-    let words = &reading.story.tokens[frame.first..frame.end];
-    let has = |word: &str| words.iter().any(|token| token.text.starts_with(word));
-    let middle = has("recenter") || (has("center") || has("middle")) && !has("line") && !has("cross");
-    let aside = |fact: &&ActFact| matches!(fact.act, Act::Drift | Act::LaneChange | Act::Swerve);
-    let last = before.iter().rfind(aside)?;
-    last.side.map(LeftRight::other).filter(|_| middle && act == Act::Drift)
-}
-
-/// "began to move toward that lane": the lane that was named last.
-fn to_that_lane(reading: &Reading<'_>, frame: &Frame, act: Act) -> Option<LeftRight> {
-    let tokens = &reading.story.tokens;
-    let end = reading.story.sentences[frame.sentence].end.min(frame.end + 4);
-    let that = (frame.first..end)
-        .any(|at| tokens[at].text == "that" && tokens.get(at + 1).is_some_and(|next| next.text == "lane"));
-    if !that || !matches!(act, Act::Drift | Act::LaneChange) {
-        return None;
-    }
-    let from = reading.story.sentences[frame.sentence.saturating_sub(1)].first;
-    (from..frame.first).rev().filter(|at| tokens[*at].text == "lane").find_map(|lane| {
-        tokens[lane.saturating_sub(3)..lane].iter().find_map(|token| match token.text.as_str() {
-            "left" | "leftmost" => Some(LeftRight::Left),
-            "right" | "rightmost" => Some(LeftRight::Right),
-            _ => None,
-        })
-    })
 }
 
 /// "nudged away from it": away from the side on which the other one is.
@@ -533,50 +464,6 @@ fn enters_a_lane(reading: &Reading<'_>, number: usize, frame: &Frame) -> bool {
     wheels && !turns && !words.iter().any(oncoming) && drove && frame.out_of.is_none() && !before().any(elsewhere)
 }
 
-/// The tokens from a verb of entering up to the lane that is entered.
-fn lane_entered(reading: &Reading<'_>, frame: &Frame) -> Option<(usize, usize)> {
-    const NAMES: [&str; 16] = [
-        "turn",
-        "turning",
-        "bike",
-        "bicycle",
-        "bus",
-        "center",
-        "left",
-        "right",
-        "leftmost",
-        "rightmost",
-        "number",
-        "singular",
-        "adjacent",
-        "next",
-        "second",
-        "third",
-    ];
-    let word = |at: usize| reading.story.tokens[at].text.as_str();
-    let end = reading.story.sentences[frame.sentence].end.min(frame.first + LANE_WITHIN);
-    let stops =
-        |at: &usize| matches!(word(*at), "," | "and" | "intersection" | "junction" | "from" | "at" | "of" | "as");
-    let lane = (frame.first + 1..end).take_while(|at| !stops(at)).find(|&at| word(at) == "lane")?;
-    let partly = frame.first.checked_sub(1).is_some_and(|at| matches!(word(at), "partially" | "partly"));
-    let named = (frame.first..lane).any(|at| NAMES.contains(&word(at)));
-    (named && !partly).then_some((frame.first, lane))
-}
-
-/// The name of a lane that is entered is no longer, with the verb. [tokens]
-const LANE_WITHIN: usize = 10;
-
-/// The side of a lane that is entered: that of a turn lane, which lies outside, or as told behind it.
-fn side_of_lane_entered(reading: &Reading<'_>, frame: &Frame) -> Option<LeftRight> {
-    let (first, lane) = lane_entered(reading, frame)?;
-    let end = reading.story.sentences[frame.sentence].end.min(lane + 5);
-    reading.story.tokens[first..end].iter().find_map(|token| match token.text.as_str() {
-        "left" | "leftmost" => Some(LeftRight::Left),
-        "right" | "rightmost" | "bike" | "bicycle" | "bus" => Some(LeftRight::Right),
-        _ => None,
-    })
-}
-
 fn is_animal(reading: &Reading<'_>, actor: Actor) -> bool {
     reading.story.world.actors[actor].kind.is_some_and(|kind| kind.group() == KindGroup::Animal)
 }
@@ -712,48 +599,4 @@ fn went_back(reading: &Reading<'_>, number: usize, frame: &Frame) -> bool {
     let mut own = before.filter(|before| before.sentence == frame.sentence && before.who == frame.who);
     let last = own.find_map(|before| before.act().filter(|_| before.happened()));
     frame.who.is_some() && matches!(last, Some(Act::Reverse | Act::Roll))
-}
-
-/// The side to which the subject vehicle changed lanes, by the column, when it "proceeded into the right turn lane".
-fn into_turn_lane(reading: &Reading<'_>, actor: Actor, frame: &Frame, act: Act) -> Option<LeftRight> {
-    let column = reading.record.sv_movement.known() == Some(Movement::ChangingLanes);
-    if act != Act::Enter || actor != SUBJECT || !column || !frame.happened() {
-        return None;
-    }
-    let words: Vec<&str> =
-        reading.story.tokens[frame.first..frame.end].iter().map(|token| token.text.as_str()).collect();
-    let has = |word: &str| words.contains(&word);
-    match (has("turn") && has("lane"), has("left"), has("right")) {
-        (true, true, false) => Some(LeftRight::Left),
-        (true, false, true) => Some(LeftRight::Right),
-        _ => None,
-    }
-}
-
-/// The side of a lane change that is told by lanes: from the left lane into the centre.
-fn to_lane(reading: &Reading<'_>, actor: Actor, frame: &Frame, act: Act) -> Option<LeftRight> {
-    if !matches!(act, Act::LaneChange | Act::Drift) {
-        return None;
-    }
-    // A lane that is told behind it is not the one that it left.
-    let own =
-        reading.story.world.actors[actor].lane.filter(|(_, first, _)| *first < frame.first).map(|(lane, ..)| lane);
-    let into = frame.lane.map(|(lane, ..)| lane);
-    match (own, into) {
-        (Some(LaneWord::Left), Some(LaneWord::Center)) => Some(LeftRight::Right),
-        (Some(LaneWord::Right), Some(LaneWord::Center)) => Some(LeftRight::Left),
-        (_, Some(LaneWord::Opposing)) => Some(LeftRight::Left),
-        _ => None,
-    }
-}
-
-/// The side of a turn that only the column tells.
-fn turned_by_column(reading: &Reading<'_>, actor: Actor, act: Act) -> Option<LeftRight> {
-    let own = reading.record.sv_movement.known().filter(|_| actor == SUBJECT);
-    let other = reading.record.cp_movement.known().filter(|_| Some(actor) == reading.contacts.partner);
-    match own.or(other).filter(|_| act == Act::Turn)? {
-        Movement::LeftTurn => Some(LeftRight::Left),
-        Movement::RightTurn => Some(LeftRight::Right),
-        _ => None,
-    }
 }
