@@ -261,6 +261,19 @@ impl World {
         }
     }
 
+    /// Who towed a trailer tows it no more: the trailer.
+    pub fn let_go(&mut self, tower: Actor) -> Option<Actor> {
+        let towed = |known: &Known| known.towed_by == Some(tower) && known.kind == Some(Kind::Trailer);
+        let loose = self.actors.iter().position(towed)?;
+        self.actors[loose].towed_by = None;
+        let known = &mut self.actors[tower];
+        known.kind = match known.kind {
+            Some(Kind::PickupWithTrailer) => Some(Kind::Pickup),
+            kind => kind,
+        };
+        Some(loose)
+    }
+
     /// Who is meant by `it`.
     pub fn pronoun(&self) -> Actor {
         self.topic
