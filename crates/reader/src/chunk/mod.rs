@@ -6,7 +6,9 @@ mod piece;
 mod places;
 mod verb;
 
-use crate::lexicon::{Adjective, Form, Lexicon, Meaning, Occupant, Part, Relation, Sense};
+pub use noun::is_of_traffic;
+
+use crate::lexicon::{Adjective, Form, Found, Lexicon, Meaning, Occupant, Part, Relation, Sense};
 use crate::token::{Token, TokenKind};
 use recrash_model::account::{Compass, Kind, KindGroup, LaneWord, LeftRight};
 
@@ -42,8 +44,8 @@ pub struct Noun {
     pub one_of: bool,
     /// It is called a tractor, the front half of a truck.
     pub tractor: bool,
-    /// It is called the second.
-    pub second: bool,
+    /// It is called the second, or so.
+    pub ordinal: Option<u8>,
     /// It is another one with a name of the subject vehicle: "a different AV".
     pub namesake: bool,
     /// More than one.
@@ -67,7 +69,7 @@ impl Noun {
             compass: None,
             one_of: false,
             tractor: false,
-            second: false,
+            ordinal: None,
             namesake: false,
             several: false,
             occupant: None,
@@ -319,9 +321,23 @@ impl Chunker<'_> {
 
     /// Where somebody is, seen from somebody else.
     fn relation(&self, at: usize) -> Option<(Relation, usize)> {
-        let found = self.lexicon.longest(self.tokens, at, |meaning| matches!(meaning, Meaning::Relation(_)))?;
-        let Meaning::Relation(relation) = found.meaning else { return None };
-        (!self.is_no_relation(at, found.length)).then_some((relation, found.length))
+        let found = self.lexicon.longest(self.tokens, at, |meaning| matches!(meaning, Meaning::Relation(_)));
+        let Some(Found { meaning: Meaning::Relation(relation), length }) = found else { return self.in_next_lane(at) };
+        (!self.is_no_relation(at, length)).then_some((relation, length))
+    }
+
+    /// "in the adjacent leftmost turn only lane": on the left, and what lane it is stands behind.
+    fn in_next_lane(&self, at: usize) -> Option<(Relation, usize)> {
+        let next = matches!(self.text(at), "in" | "from")
+            && self.text(at + 1) == "the"
+            && matches!(self.text(at + 2), "adjacent" | "neighboring");
+        let (_, length) = self.lane(at + 3).filter(|_| next)?;
+        let relation = (at + 3..at + 3 + length).find_map(|at| match self.text(at) {
+            "left" | "leftmost" => Some(Relation::Left),
+            "right" | "rightmost" => Some(Relation::Right),
+            _ => None,
+        })?;
+        Some((relation, 3))
     }
 
     fn small_word(&self, at: usize) -> (Option<Chunk>, usize) {
@@ -393,7 +409,7 @@ impl Chunker<'_> {
         let part = self
             .part(behind)
             .is_some_and(|(part, _)| part != Part::Noun || !matches!(self.text(behind), "side" | "half"));
-        side && (part || matches!(self.text(behind), "lane" | "lanes" | "turn" | "most"))
+        side && (part || matches!(self.text(behind), "lane" | "lanes" | "turn"))
     }
 
     fn parenthesis(&self, at: usize) -> usize {

@@ -117,11 +117,24 @@ impl Chunker<'_> {
         {
             return None;
         }
+        if noun.article == Article::None && noun.kind.is_some() && !noun.several && self.shares_article(first) {
+            noun.article = Article::Definite;
+        }
         if one_of {
             (noun.one_of, noun.several) = (noun.several, false);
             noun.article = if noun.one_of { Article::Indefinite } else { Article::Definite };
         }
         Some((noun, length))
+    }
+
+    /// "the van and motorcycle": the article of the first is that of the second.
+    fn shares_article(&self, first: usize) -> bool {
+        let Some(and) = first.checked_sub(1).filter(|and| *and > self.first && self.text(*and) == "and") else {
+            return false;
+        };
+        let begins = (self.first.max(and.saturating_sub(LONGEST_LEAD))..and).rev().find(|at| self.text(*at) == "the");
+        let known = begins.and_then(|at| self.noun(at).filter(|(_, length)| at + length == and));
+        known.is_some_and(|(noun, _)| !noun.several)
     }
 
     fn another_of(&self, at: usize) -> Option<(Noun, usize)> {
@@ -227,7 +240,12 @@ impl Chunker<'_> {
                     draft.noun.names.push(word.to_owned());
                 }
                 draft.noun.several |= matches!(word, "several" | "multiple" | "many" | "two" | "three" | "four");
-                draft.noun.second |= word == "second";
+                draft.noun.ordinal = draft.noun.ordinal.or(match word {
+                    "second" => Some(2),
+                    "third" => Some(3),
+                    "fourth" => Some(4),
+                    _ => None,
+                });
                 draft.noun.adjectives.push(adjective);
             }
             Meaning::Make if capital || draft.make => {
@@ -437,6 +455,24 @@ impl Chunker<'_> {
         if served && place && !matches!(found.meaning, Meaning::Subject) {
             return None;
         }
+        // "a pedestrian beacon", "a HAWK signal": what is for people, or called by an animal, is neither.
+        let kind = match found.meaning {
+            Meaning::Kind(kind) => Some(kind),
+            _ => None,
+        };
+        let next = self.text(at + found.length);
+        let place = matches!(
+            next,
+            "beacon" | "beacons" | "signal" | "button" | "bridge" | "overpass" | "refuge" | "walkway" | "crosswalk"
+        );
+        // "at a pedestrian crossing": "a pedestrian crossing the street" is somebody.
+        let behind = self.text(at + found.length + 1);
+        let place = place || next == "crossing" && matches!(behind, "" | "." | "," | "sign" | "signal" | "light");
+        let walks = kind.is_some_and(|kind| matches!(kind.group(), KindGroup::OnFoot | KindGroup::Cyclist));
+        let named = kind == Some(Kind::Animal) && self.tokens[at].capital && matches!(next, "pedestrian" | "crosswalk");
+        if place && (walks || kind == Some(Kind::Animal)) || named {
+            return None;
+        }
         // "the bus only lane", "its vehicle speed".
         let behind = |ahead: usize| self.text(at + found.length + ahead);
         let only = behind(0) == "only" && matches!(behind(1), "lane" | "lanes");
@@ -444,34 +480,7 @@ impl Chunker<'_> {
             return None;
         }
         // "light", "sign" of "traffic sign" and "stop sign" are no things that are struck, unless they are.
-        if self.text(at) == "traffic"
-            && matches!(
-                self.text(at + 1),
-                "light"
-                    | "lights"
-                    | "signal"
-                    | "signals"
-                    | "circle"
-                    | "lane"
-                    | "lanes"
-                    | "control"
-                    | "congestion"
-                    | "stop"
-                    | "conditions"
-                    | "queue"
-                    | "sign"
-                    | "cone"
-                    | "barrier"
-                    | "island"
-                    | "cones"
-                    | "rules"
-                    | "rule"
-                    | "law"
-                    | "laws"
-                    | "regulations"
-                    | "code"
-            )
-        {
+        if self.text(at) == "traffic" && is_of_traffic(self.text(at + 1)) {
             return None;
         }
         // "the leaf of the gate", "a tight fit": names of models are written large.
@@ -622,6 +631,37 @@ impl Chunker<'_> {
             || matches!(meaning, Meaning::Kind(kind) if noun.occupant.is_some() && !kind.is_vehicle());
         (!no_more).then_some((meaning, length))
     }
+}
+
+/// Whether "traffic" before this word is nobody who drives: "traffic light", "traffic rules".
+pub fn is_of_traffic(word: &str) -> bool {
+    const NAMES: [&str; 24] = [
+        "light",
+        "lights",
+        "signal",
+        "signals",
+        "circle",
+        "lane",
+        "lanes",
+        "control",
+        "controls",
+        "congestion",
+        "stop",
+        "conditions",
+        "queue",
+        "sign",
+        "cone",
+        "barrier",
+        "island",
+        "cones",
+        "rules",
+        "rule",
+        "law",
+        "laws",
+        "regulations",
+        "code",
+    ];
+    NAMES.contains(&word)
 }
 
 /// Whether a thing of this kind has parts and people in it.

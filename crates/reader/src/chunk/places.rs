@@ -37,7 +37,7 @@ const LANES: [(&[&[&str]], LaneWord); 16] = [
 
 /// Words that stand before "lane" in its name.
 fn in_lane_names(word: &str) -> bool {
-    matches!(word, "left" | "right" | "leftmost" | "rightmost" | "most" | "far" | "center" | "centre" | "middle")
+    matches!(word, "left" | "right" | "leftmost" | "rightmost" | "far" | "center" | "centre" | "middle")
         || matches!(word, "turn" | "turning" | "only" | "hand" | "through" | "thru" | "straight" | "dedicated")
         || matches!(word, "travel" | "driving" | "traffic" | "bike" | "bicycle" | "bus" | "hov" | "carpool" | "merge")
         || matches!(word, "adjacent" | "next" | "neighboring" | "same" | "inside" | "outside" | "curb" | "parking")

@@ -22,7 +22,7 @@ struct Candidate<'a> {
 }
 
 /// A phrase is no verb where one of these says so, whichever it is: their order does not matter.
-const NO_VERB: [fn(&Candidate<'_>) -> bool; 21] = [
+const NO_VERB: [fn(&Candidate<'_>) -> bool; 22] = [
     |verb| verb.is_determined(),
     |verb| verb.is_described(),
     |verb| verb.is_turn_of_a_side(),
@@ -41,6 +41,7 @@ const NO_VERB: [fn(&Candidate<'_>) -> bool; 21] = [
     |verb| verb.is_a_side_moved_to(),
     |verb| verb.is_an_opening(),
     |verb| verb.is_cross_traffic(),
+    |verb| verb.is_a_crossing(),
     |verb| verb.is_a_sliding_door(),
     |verb| verb.is_contacts_or_stop_sign(),
     |verb| verb.is_mounted_on_a_vehicle(),
@@ -254,6 +255,14 @@ impl Candidate<'_> {
         self.word(0) == "cross" && matches!(self.word(1), "traffic" | "street" | "road" | "walk")
     }
 
+    /// "at a railroad crossing", "a pedestrian crossing sign". "For a deer crossing the road" is one.
+    fn is_a_crossing(&self) -> bool {
+        let named = matches!(self.word_before, "railroad" | "railway" | "pedestrian" | "school" | "deer" | "cattle");
+        self.word(0) == "crossing"
+            && named
+            && matches!(self.word(1), "" | "." | "," | "sign" | "signal" | "light" | "guard")
+    }
+
     /// "a truck-mounted sign".
     fn is_mounted_on_a_vehicle(&self) -> bool {
         let before = self.at.checked_sub(1).and_then(|at| self.chunker.head(at));
@@ -337,21 +346,34 @@ impl Chunker<'_> {
         Some((sense, form, if from || to { found.length - 1 } else { found.length }))
     }
 
-    /// The longest verb of the lexicon here: "rolled into the roadway" touches nobody.
+    /// The longest verb of the lexicon here that the words behind it allow: "rolled into the roadway" touches nobody.
     fn verb_phrase(&self, at: usize) -> Option<Found> {
         let found = self.lexicon.longest(self.tokens, at, |meaning| matches!(meaning, Meaning::Verb(..)))?;
-        let touches =
-            |meaning| matches!(meaning, Meaning::Verb(Sense::Contact | Sense::ReverseContact | Sense::OpenDoorInto, _));
-        if touches(found.meaning) && self.goes_to_a_place(at + found.length) {
-            let others = |meaning| matches!(meaning, Meaning::Verb(..)) && !touches(meaning);
-            return self.lexicon.longest(self.tokens, at, others);
+        let Meaning::Verb(sense, _) = found.meaning else { return Some(found) };
+        let (behind, last) = (at + found.length, self.text(at + found.length - 1));
+        let touches = |sense| matches!(sense, Sense::Contact | Sense::ReverseContact | Sense::OpenDoorInto);
+        let turns = |sense| matches!(sense, Sense::Act(Act::Turn) | Sense::Sided(Act::Turn, _));
+        let wrong_way = |sense| sense == Sense::Act(Act::WrongWay);
+        let lane = matches!(self.text(behind), "lane" | "lanes" | "pocket");
+        // "began to slow to turn": two acts, of which it began the first.
+        let two = (at..behind).filter(|&at| self.text(at) == "to").count() > 1;
+        let others = |allowed: &dyn Fn(Sense) -> bool| {
+            self.lexicon.longest(
+                self.tokens,
+                at,
+                |meaning| matches!(meaning, Meaning::Verb(sense, _) if allowed(sense)),
+            )
+        };
+        if touches(sense) && self.goes_to_a_place(behind) {
+            return others(&|sense| !touches(sense));
         }
         // "began merging to the left turn lane" is no turn.
-        let turns = |meaning| matches!(meaning, Meaning::Verb(Sense::Act(Act::Turn) | Sense::Sided(Act::Turn, _), _));
-        let lane = matches!(self.text(at + found.length), "lane" | "lanes" | "pocket");
-        if turns(found.meaning) && lane && self.text(at + found.length - 1) == "turn" {
-            let others = |meaning| matches!(meaning, Meaning::Verb(..)) && !turns(meaning);
-            return self.lexicon.longest(self.tokens, at, others);
+        if turns(sense) && (lane && last == "turn" || two) {
+            return others(&|sense| !turns(sense));
+        }
+        // "drove against traffic laws" is no way.
+        if wrong_way(sense) && last == "traffic" && super::is_of_traffic(self.text(behind)) {
+            return others(&|sense| !wrong_way(sense));
         }
         Some(found)
     }

@@ -2,15 +2,15 @@
 
 use super::Reading;
 use super::across::{begins, is_behind_begin};
+use super::sides::{back_to_the_middle, lane_entered, side_of};
 use super::speeds::is_of_last_contact;
 use super::{entry, flashback, nominal};
 use crate::chunk::{Joint, Spot};
-use crate::frame::{Frame, sided};
+use crate::frame::Frame;
 use crate::lexicon::{Form, Lexicon, Progress, Relation, Sense};
 use crate::token::Token;
 use crate::world::{Actor, SUBJECT};
-use recrash_model::account::{Account, Act, ActFact, Kind, KindGroup, LaneWord, LeftRight, Manner, RoadFeature};
-use recrash_model::template::Movement;
+use recrash_model::account::{Account, Act, ActFact, Kind, KindGroup, LeftRight, Manner, RoadFeature};
 
 /// What somebody did, in order; the same act told twice in a row once.
 pub(super) fn acts(reading: &Reading<'_>, actor: Actor) -> Vec<ActFact> {
@@ -35,7 +35,7 @@ pub(super) fn acts(reading: &Reading<'_>, actor: Actor) -> Vec<ActFact> {
             continue;
         }
         let side =
-            side_of(reading, actor, frame, act).or_else(|| back_to_the_middle(reading, frame, act, &all)).or_else(
+            side_of(reading, actor, number, act).or_else(|| back_to_the_middle(reading, frame, act, &all)).or_else(
                 || all.last().and_then(|out| out.side).filter(|_| act == Act::Pass && went_by(reading, number, frame)),
             );
         let after_contact = reading.is_after(number);
@@ -195,51 +195,6 @@ fn with_contact(reading: &Reading<'_>, actor: Actor, all: &mut Vec<ActFact>) {
     all.insert(0, fact);
 }
 
-/// To which side an act goes: as told with it, else by the lane that it leads into or begins in, else by the column.
-fn side_of(reading: &Reading<'_>, actor: Actor, frame: &Frame, act: Act) -> Option<LeftRight> {
-    let told =
-        || frame.side.or_else(|| to_lane(reading, actor, frame, act)).or_else(|| to_that_lane(reading, frame, act));
-    let turn_lane = || match reading.story.world.actors[actor].lane?.0 {
-        LaneWord::LeftTurn => Some(LeftRight::Left),
-        LaneWord::RightTurn => Some(LeftRight::Right),
-        _ => None,
-    };
-    let entered = || if act == Act::LaneChange { side_of_lane_entered(reading, frame) } else { None };
-    let side = if sided(act) { told().or_else(entered) } else { None };
-    side.or_else(|| into_turn_lane(reading, actor, frame, act))
-        .or_else(|| if act == Act::Turn { turn_lane() } else { None })
-        .or_else(|| turned_by_column(reading, actor, act))
-}
-
-/// "moved right, and then recentered itself": back to the other side.
-fn back_to_the_middle(reading: &Reading<'_>, frame: &Frame, act: Act, before: &[ActFact]) -> Option<LeftRight> {
-    let words = &reading.story.tokens[frame.first..frame.end];
-    let has = |word: &str| words.iter().any(|token| token.text.starts_with(word));
-    let middle = has("recenter") || (has("center") || has("middle")) && !has("line") && !has("cross");
-    let aside = |fact: &&ActFact| matches!(fact.act, Act::Drift | Act::LaneChange | Act::Swerve);
-    let last = before.iter().rfind(aside)?;
-    last.side.map(LeftRight::other).filter(|_| middle && act == Act::Drift)
-}
-
-/// "began to move toward that lane": the lane that was named last.
-fn to_that_lane(reading: &Reading<'_>, frame: &Frame, act: Act) -> Option<LeftRight> {
-    let tokens = &reading.story.tokens;
-    let end = reading.story.sentences[frame.sentence].end.min(frame.end + 4);
-    let that = (frame.first..end)
-        .any(|at| tokens[at].text == "that" && tokens.get(at + 1).is_some_and(|next| next.text == "lane"));
-    if !that || !matches!(act, Act::Drift | Act::LaneChange) {
-        return None;
-    }
-    let from = reading.story.sentences[frame.sentence.saturating_sub(1)].first;
-    (from..frame.first).rev().filter(|at| tokens[*at].text == "lane").find_map(|lane| {
-        tokens[lane.saturating_sub(3)..lane].iter().find_map(|token| match token.text.as_str() {
-            "left" | "leftmost" => Some(LeftRight::Left),
-            "right" | "rightmost" => Some(LeftRight::Right),
-            _ => None,
-        })
-    })
-}
-
 /// "nudged away from it": away from the side on which the other one is.
 pub(super) fn move_away(account: &mut Account) {
     use recrash_model::account::{Origin, Source, told};
@@ -375,11 +330,14 @@ fn act_of(reading: &Reading<'_>, number: usize, frame: &Frame, pushed: bool) -> 
         Act::Enter if enters_a_lane(reading, number, frame) => Act::LaneChange,
         Act::Follow | Act::SetOff | Act::Drift if comes_out => Act::PullOut,
         Act::Follow if goes_on_from_a_stand(reading, number, frame, &words) => Act::SetOff,
+        Act::Follow if sets_off_at_green(reading, number, frame) => Act::SetOff,
         Act::Follow if sets_off_with_subject(reading, frame, &words) => Act::SetOff,
         // Who came along and was "beginning to enter" did not stand.
         Act::SetOff if words.chars().take(24).collect::<String>().contains("enter") && moved() == Some(Act::Follow) => {
             Act::Enter
         }
+        // "It drove up on green and began to proceed through the junction": so it went on.
+        Act::SetOff if begins_to_go_on(reading, number, frame) => Act::Follow,
         // "shifted into reverse and began to accelerate": still backwards.
         Act::SetOff if gains_speed(reading, number, frame) && moved() == Some(Act::Reverse) => Act::Reverse,
         Act::SetOff if gains_speed(reading, number, frame) => Act::Accelerate,
@@ -448,6 +406,22 @@ pub(super) fn gains_speed(reading: &Reading<'_>, number: usize, frame: &Frame) -
     frame.act() == Some(Act::SetOff) && says(frame.end, "accelerat") && !forward && last.is_some_and(moves)
 }
 
+/// Whether who drove along began to proceed "straight" or "through", and nothing told since had made it stand.
+pub(super) fn begins_to_go_on(reading: &Reading<'_>, number: usize, frame: &Frame) -> bool {
+    let word = |at: usize| reading.story.tokens.get(at).map_or("", |token| token.text.as_str());
+    let goes =
+        (frame.first..frame.end).any(|at| ["proceed", "continu", "driv"].iter().any(|stem| word(at).starts_with(stem)));
+    let on = goes && (word(frame.end - 1) == "straight" || matches!(word(frame.end), "straight" | "through"));
+    let waits = |(other, before): (usize, &Frame)| other < number && before.sense == Sense::Yield && before.happened();
+    let waited = reading.before(SUBJECT).any(waits);
+    // Of others less is told: they may have stood.
+    frame.who == Some(SUBJECT)
+        && on
+        && !waited
+        && !turned_green(reading, frame)
+        && last_act(reading, number, frame, |_| true) == Some(Act::Follow)
+}
+
 /// "It turned, and yielded to a man": who gives way to somebody and had not slowed since it drove has slowed for that.
 fn yields_in_motion(reading: &Reading<'_>, number: usize, frame: &Frame) -> bool {
     // "began to yield to it"; "failed to yield" and "waited to yield" are none.
@@ -488,50 +462,6 @@ fn enters_a_lane(reading: &Reading<'_>, number: usize, frame: &Frame) -> bool {
     let placed = !reading.story.world.actors[who].relations.is_empty();
     let drove = before().any(came) || placed && who != SUBJECT;
     wheels && !turns && !words.iter().any(oncoming) && drove && frame.out_of.is_none() && !before().any(elsewhere)
-}
-
-/// The tokens from a verb of entering up to the lane that is entered.
-fn lane_entered(reading: &Reading<'_>, frame: &Frame) -> Option<(usize, usize)> {
-    const NAMES: [&str; 16] = [
-        "turn",
-        "turning",
-        "bike",
-        "bicycle",
-        "bus",
-        "center",
-        "left",
-        "right",
-        "leftmost",
-        "rightmost",
-        "number",
-        "singular",
-        "adjacent",
-        "next",
-        "second",
-        "third",
-    ];
-    let word = |at: usize| reading.story.tokens[at].text.as_str();
-    let end = reading.story.sentences[frame.sentence].end.min(frame.first + LANE_WITHIN);
-    let stops =
-        |at: &usize| matches!(word(*at), "," | "and" | "intersection" | "junction" | "from" | "at" | "of" | "as");
-    let lane = (frame.first + 1..end).take_while(|at| !stops(at)).find(|&at| word(at) == "lane")?;
-    let partly = frame.first.checked_sub(1).is_some_and(|at| matches!(word(at), "partially" | "partly"));
-    let named = (frame.first..lane).any(|at| NAMES.contains(&word(at)));
-    (named && !partly).then_some((frame.first, lane))
-}
-
-/// The name of a lane that is entered is no longer, with the verb. [tokens]
-const LANE_WITHIN: usize = 10;
-
-/// The side of a lane that is entered: that of a turn lane, which lies outside, or as told behind it.
-fn side_of_lane_entered(reading: &Reading<'_>, frame: &Frame) -> Option<LeftRight> {
-    let (first, lane) = lane_entered(reading, frame)?;
-    let end = reading.story.sentences[frame.sentence].end.min(lane + 5);
-    reading.story.tokens[first..end].iter().find_map(|token| match token.text.as_str() {
-        "left" | "leftmost" => Some(LeftRight::Left),
-        "right" | "rightmost" | "bike" | "bicycle" | "bus" => Some(LeftRight::Right),
-        _ => None,
-    })
 }
 
 fn is_animal(reading: &Reading<'_>, actor: Actor) -> bool {
@@ -584,17 +514,36 @@ fn goes_on_from_a_stand(reading: &Reading<'_>, number: usize, frame: &Frame, wor
     !goes_on && frame.sense != Sense::Approach && stood(last)
 }
 
+/// "It slowed for a red light. After that had turned green it was moving forward": it had waited for that.
+pub(super) fn sets_off_at_green(reading: &Reading<'_>, number: usize, frame: &Frame) -> bool {
+    let words = &reading.story.tokens[frame.first..frame.end];
+    let forward = words.iter().any(|token| token.text == "forward") && turned_green(reading, frame);
+    let slowed = frame.who.filter(|_| forward).and_then(|who| {
+        reading
+            .before(who)
+            .filter(|(before, frame)| *before < number && frame.act().is_some() && frame.happened())
+            .last()
+    });
+    let red = |(number, frame): (usize, &Frame)| {
+        let (first, end) = reading.window(number);
+        let red = reading.story.tokens[first..end].iter().any(|token| token.text == "red");
+        frame.act() == Some(Act::Slow) && red
+    };
+    frame.act() == Some(Act::Follow) && slowed.is_some_and(red)
+}
+
 /// "Once the light turned green, it began to proceed, and a car behind it proceeded forward": so did that.
 fn sets_off_with_subject(reading: &Reading<'_>, frame: &Frame, words: &str) -> bool {
     let Some(who) = frame.who.filter(|who| *who != SUBJECT) else { return false };
     let mut relations = reading.story.world.actors[who].relations.iter();
-    let sets_off = |other: &Frame| {
-        other.who == Some(SUBJECT) && other.sentence == frame.sentence && other.act() == Some(Act::SetOff)
+    let sets_off = |(number, other): (usize, &Frame)| {
+        let goes = other.act() == Some(Act::SetOff) || sets_off_at_green(reading, number, other);
+        other.sentence == frame.sentence && goes
     };
     ["proceed", "start", "beg", "mov"].iter().any(|start| words.starts_with(start))
         && relations.any(|(relation, sentence)| *relation == Relation::Behind && *sentence == frame.sentence)
         && turned_green(reading, frame)
-        && reading.story.frames.iter().any(sets_off)
+        && reading.before(SUBJECT).any(sets_off)
 }
 
 /// "passed a parked trailer", "passed behind the van".
@@ -626,11 +575,22 @@ pub(super) fn not_done(reading: &Reading<'_>, number: usize, frame: &Frame) -> O
         Some(Act::RunStop)
     } else if named.iter().any(|(feature, ..)| *feature == RoadFeature::Signal) {
         Some(Act::RunRed)
-    } else if frame.sense == Sense::Yield {
+    } else if frame.sense == Sense::Yield || comes_out_so(reading, frame) {
         Some(Act::FailToYield)
     } else {
         None
     }
+}
+
+/// "A van left a lot without stopping", "turned out of an alley without first stopping": where nothing but the road calls for a stop.
+fn comes_out_so(reading: &Reading<'_>, frame: &Frame) -> bool {
+    let comes = |other: &Frame| {
+        let out = matches!(other.out_of, Some(Spot::Driveway | Spot::Stall | Spot::SideStreet));
+        other.who == frame.who && other.sentence == frame.sentence && other.happened() && out
+    };
+    frame.act() == Some(Act::Stop)
+        && frame.who.is_some_and(|who| who != SUBJECT)
+        && reading.story.frames.iter().any(comes)
 }
 
 /// "rolled back from the light, and failed to stop": it did not stop going backwards, and ran nothing.
@@ -639,46 +599,4 @@ fn went_back(reading: &Reading<'_>, number: usize, frame: &Frame) -> bool {
     let mut own = before.filter(|before| before.sentence == frame.sentence && before.who == frame.who);
     let last = own.find_map(|before| before.act().filter(|_| before.happened()));
     frame.who.is_some() && matches!(last, Some(Act::Reverse | Act::Roll))
-}
-
-/// The side to which the subject vehicle changed lanes, by the column, when it "proceeded into the right turn lane".
-fn into_turn_lane(reading: &Reading<'_>, actor: Actor, frame: &Frame, act: Act) -> Option<LeftRight> {
-    let column = reading.record.sv_movement.known() == Some(Movement::ChangingLanes);
-    if act != Act::Enter || actor != SUBJECT || !column || !frame.happened() {
-        return None;
-    }
-    let words: Vec<&str> =
-        reading.story.tokens[frame.first..frame.end].iter().map(|token| token.text.as_str()).collect();
-    let has = |word: &str| words.contains(&word);
-    match (has("turn") && has("lane"), has("left"), has("right")) {
-        (true, true, false) => Some(LeftRight::Left),
-        (true, false, true) => Some(LeftRight::Right),
-        _ => None,
-    }
-}
-
-/// The side of a lane change that is told by lanes: from the left lane into the centre.
-fn to_lane(reading: &Reading<'_>, actor: Actor, frame: &Frame, act: Act) -> Option<LeftRight> {
-    if !matches!(act, Act::LaneChange | Act::Drift) {
-        return None;
-    }
-    let own = reading.story.world.actors[actor].lane.map(|(lane, ..)| lane);
-    let into = frame.lane.map(|(lane, ..)| lane);
-    match (own, into) {
-        (Some(LaneWord::Left), Some(LaneWord::Center)) => Some(LeftRight::Right),
-        (Some(LaneWord::Right), Some(LaneWord::Center)) => Some(LeftRight::Left),
-        (_, Some(LaneWord::Opposing)) => Some(LeftRight::Left),
-        _ => None,
-    }
-}
-
-/// The side of a turn that only the column tells.
-fn turned_by_column(reading: &Reading<'_>, actor: Actor, act: Act) -> Option<LeftRight> {
-    let own = reading.record.sv_movement.known().filter(|_| actor == SUBJECT);
-    let other = reading.record.cp_movement.known().filter(|_| Some(actor) == reading.contacts.partner);
-    match own.or(other).filter(|_| act == Act::Turn)? {
-        Movement::LeftTurn => Some(LeftRight::Left),
-        Movement::RightTurn => Some(LeftRight::Right),
-        _ => None,
-    }
 }

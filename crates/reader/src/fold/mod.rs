@@ -18,6 +18,7 @@ mod picture;
 mod place;
 mod role;
 mod scenario;
+mod sides;
 mod speeds;
 mod standing;
 mod state;

@@ -4,6 +4,7 @@ use super::Reading;
 use crate::frame::Frame;
 use crate::lexicon::Lexicon;
 use crate::token::{Sentence, Token, number};
+use crate::world::SUBJECT;
 use recrash_model::account::{Act, Fact, Place, PlaceKind, RoadFeature, Source};
 use recrash_model::template::RoadType;
 
@@ -39,7 +40,12 @@ pub(crate) fn place(reading: &Reading<'_>) -> Place {
                     )
                 });
             let aside = way_in || way_out && kind == PlaceKind::Garage;
-            if place.kind.is_none() && !(aside && matches!(kind, PlaceKind::Garage | PlaceKind::ParkingLot)) {
+            // "A van traveling in an alley pulled out", told of one that drives along a street.
+            let of_other = kind == PlaceKind::Alley && is_told_of_another(reading, number, sentence.first + at);
+            if place.kind.is_none()
+                && !(of_other && column_is_road(reading))
+                && !(aside && matches!(kind, PlaceKind::Garage | PlaceKind::ParkingLot))
+            {
                 place.kind = Some(reading.told(kind, sentence.first + at, sentence.first + at + length));
             }
         }
@@ -66,6 +72,17 @@ pub(crate) fn place(reading: &Reading<'_>) -> Place {
     place.lighting = record.lighting.map(|lighting| Fact::of_column(lighting, "Lighting"));
     place.weather = record.weather.iter().map(|weather| Fact::of_column(*weather, "Weather")).collect();
     place
+}
+
+/// Whether what stands at this token of a sentence is told of another than the subject vehicle.
+fn is_told_of_another(reading: &Reading<'_>, number: usize, token: usize) -> bool {
+    let here = reading.story.frames.iter().rfind(|frame| frame.sentence == number && frame.first <= token);
+    here.is_some_and(|frame| frame.who.is_some_and(|who| who != SUBJECT) && frame.object != Some(SUBJECT))
+}
+
+/// Whether the column says that it was on a road.
+fn column_is_road(reading: &Reading<'_>) -> bool {
+    matches!(reading.record.road.known(), Some(RoadType::Street | RoadType::Intersection | RoadType::RuralRoad))
 }
 
 /// Words that lead to a kerb at which somebody stands.

@@ -1,6 +1,6 @@
 //! State at the contact as the words tell it, how long somebody had stood, and why.
 
-use super::acts::{avoids, gains_speed, in_headline};
+use super::acts::{avoids, begins_to_go_on, gains_speed, in_headline, sets_off_at_green};
 use super::speeds::is_of_last_contact;
 use super::{Reading, flashback, nominal};
 use crate::frame::Frame;
@@ -45,7 +45,12 @@ pub(super) fn state(reading: &Reading<'_>, actor: Actor) -> (Option<Fact<Contact
         if act == Act::Slow && told.stands() && avoids(reading, frame) {
             continue;
         }
-        let act = if gains_speed(reading, number, frame) { Act::Accelerate } else { act };
+        let act = match act {
+            Act::SetOff if gains_speed(reading, number, frame) => Act::Accelerate,
+            Act::SetOff if begins_to_go_on(reading, number, frame) => Act::Follow,
+            Act::Follow if sets_off_at_green(reading, number, frame) => Act::SetOff,
+            act => act,
+        };
         told.add(reading, frame, act);
     }
     let hits = contact.filter(|frame| actor != SUBJECT && frame.who == Some(actor) && runs_into(reading, frame));

@@ -27,6 +27,8 @@ pub(crate) fn place_of(reading: &Reading<'_>, actor: Actor) -> Option<Fact<Origi
         .or_else(|| in_queue(&clues))
         .or_else(|| in_other_lane(&clues))
         .or_else(|| by_directions(&clues))
+        .or_else(|| before_its_turn(&clues))
+        .or_else(|| faces_its_way(&clues))
         .or_else(|| on_oncoming_side(&clues))
         .or_else(|| at_side_of_road(&clues))
         .or_else(|| told_afterwards(&clues))
@@ -300,11 +302,46 @@ fn in_other_lane(clues: &Clues<'_>) -> Option<Fact<Origin>> {
 fn by_directions(clues: &Clues<'_>) -> Option<Fact<Origin>> {
     let actors = &clues.reading.story.world.actors;
     let ((own, ..), (other, first, end)) = (actors[SUBJECT].heading?, actors[clues.actor].heading?);
-    let value = match own.eighths_to(other) {
+    Some(clues.reading.told(met_from(own, other)?, first, end))
+}
+
+/// From where somebody with this direction meets one with another.
+fn met_from(own: Compass, other: Compass) -> Option<Origin> {
+    Some(match own.eighths_to(other) {
         2 => Origin::Cross { side: LeftRight::Left },
         4 => Origin::Opposite,
         6 => Origin::Cross { side: LeftRight::Right },
         _ => return None,
+    })
+}
+
+/// "It slowed for a bus turning right onto northbound Elm Street": which came westbound.
+fn before_its_turn(clues: &Clues<'_>) -> Option<Fact<Origin>> {
+    let (reading, actor) = (clues.reading, clues.actor);
+    let actors = &reading.story.world.actors;
+    let (own, ..) = actors[SUBJECT].heading?;
+    let turns = |frame: &Frame| frame.act() == Some(Act::Turn) && frame.onto && frame.happened();
+    let (_, frame) = reading.before(actor).find(|(_, frame)| turns(frame))?;
+    let (after, ..) = frame.heading?;
+    let before = after.turned(if frame.side? == LeftRight::Right { 6 } else { 2 });
+    let came = actors[actor].heading.is_none() && actors[actor].kind.is_some_and(Kind::is_vehicle);
+    Some(Fact { value: met_from(own, before).filter(|_| came)?, source: reading.of(frame) })
+}
+
+/// "It yielded to a van facing west at the crosswalk", told of one that goes west: the van stands ahead.
+fn faces_its_way(clues: &Clues<'_>) -> Option<Fact<Origin>> {
+    let (reading, actor) = (clues.reading, clues.actor);
+    let known = &reading.story.world.actors[actor];
+    let ((own, ..), (other, first, end)) = (reading.story.world.actors[SUBJECT].heading?, known.heading?);
+    let stays = !reading.did(SUBJECT, Act::Turn) && !reading.did(SUBJECT, Act::LaneChange);
+    let stands = |frame: &Frame| {
+        frame.sense == Sense::Face || frame.sense != Sense::Parked && matches!(frame.act(), Some(Act::Hold | Act::Stop))
     };
-    Some(clues.reading.told(value, first, end))
+    let only_stands = !known.several && reading.before(actor).all(|(_, frame)| stands(frame));
+    let met = |(_, frame): (usize, &Frame)| {
+        let slows = frame.sense == Sense::Yield || matches!(frame.act(), Some(Act::Slow | Act::Stop | Act::Hold));
+        frame.object == Some(actor) && slows && frame.happened()
+    };
+    let ahead = known.kind.is_some_and(Kind::is_vehicle) && own == other && stays && only_stands;
+    (ahead && reading.before(SUBJECT).any(met)).then(|| reading.told(Origin::Ahead, first, end))
 }

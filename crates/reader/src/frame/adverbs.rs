@@ -1,7 +1,7 @@
 //! What the words behind a verb make of it: "emerged in reverse", "entered against the signal", "passed in front of the bus".
 
 use super::Frame;
-use crate::chunk::Piece;
+use crate::chunk::{Piece, is_of_traffic};
 use crate::lexicon::{Form, Part, Progress, Relation, Sense};
 use crate::token::{Sentence, Token};
 use crate::world::SUBJECT;
@@ -238,13 +238,13 @@ fn leaves_a_control(frames: &[Frame], number: usize, tokens: &[Token], sentences
             .any(|token| matches!(token.text.as_str(), "sign" | "light" | "signal"))
 }
 
-/// "came into the street on the wrong side, against the traffic".
+/// "came into the street on the wrong side, against the traffic". "Went against the traffic laws" is no way.
 fn against_traffic(frame: &Frame, words: &[&str]) -> bool {
     let moves = matches!(frame.act(), Some(Act::Follow | Act::Enter | Act::SetOff));
-    let against = words.windows(3).any(|three| {
-        three[0] == "against" && (three[1] == "traffic" || three[1] == "the" && three[2] == "traffic")
-            || three == ["the", "wrong", "side"]
-            || three[0] == "the" && three[1] == "wrong" && matches!(three[2], "way" | "direction")
+    let against = (0..words.len()).any(|at| match &words[at..] {
+        ["against", "the", "traffic", next, ..] | ["against", "traffic", next, ..] => !is_of_traffic(next),
+        ["the", "wrong", "side" | "way" | "direction", ..] => true,
+        _ => false,
     });
     moves && against && frame.happened() && frame.who != Some(SUBJECT)
 }

@@ -437,7 +437,7 @@ impl Parser<'_> {
         }
         let preposition = carry.preposition.take();
         carry.to = false;
-        if self.is_lane_of_others(placed.first) {
+        if self.is_lane_of_others(placed.first) || self.is_astride(placed) {
             return;
         }
         let stands = (lane, placed.first, placed.end);
@@ -493,7 +493,9 @@ impl Parser<'_> {
     /// between vehicles in the left lane", "passing traffic in the center lane", "a parking spot in the curb lane", "in the lane adjacent to the rightmost, bus-only lane".
     fn is_lane_of_others(&self, first: usize) -> bool {
         let text = |back: usize| first.checked_sub(back).map_or("", |at| self.tokens[at].text.as_str());
-        let article = usize::from(text(1) == "the");
+        // "oncoming traffic in the following left lane".
+        let told = usize::from(matches!(text(1), "following" | "other" | "nearest" | "closest" | "respective"));
+        let article = told + usize::from(text(1 + told) == "the");
         let (before, noun, by) = (text(1 + article), text(2 + article), text(3 + article));
         let between_them = by == "between" && ["vehicles", "cars"].contains(&noun);
         let passing = noun == "traffic" && ["passing", "cross", "oncoming"].contains(&by);
@@ -501,6 +503,20 @@ impl Parser<'_> {
         let between = |back: &usize| ["the", "rightmost", "leftmost", "right", "left", ",", "-"].contains(&text(*back));
         let behind = (1..6).take_while(between).count() + 1;
         in_it || text(behind) == "to" && ["adjacent", "next"].contains(&text(behind + 1))
+    }
+
+    /// "partially in the left lane and partially in the AV's lane": between the two, and so in that of the subject vehicle no less.
+    fn is_astride(&self, placed: &Placed) -> bool {
+        let partly = |at: Option<usize>| {
+            at.and_then(|at| self.tokens.get(at))
+                .is_some_and(|token| matches!(token.text.as_str(), "partially" | "partly"))
+        };
+        let word = |at: usize| self.tokens.get(at).map_or("", |token| token.text.as_str());
+        let one = partly(placed.first.checked_sub(3)) && word(placed.first - 1) == "the";
+        let other = word(placed.end) == "and" && partly(Some(placed.end + 1));
+        let own = (placed.end + 3..placed.end + 9)
+            .any(|at| word(at) == "'s" && word(at + 1) == "lane" || word(at) == "same" && word(at + 1) == "lane");
+        one && other && own
     }
 
     pub(super) fn spot(&mut self, spot: Spot, placed: &Placed, carry: &mut Carry) {

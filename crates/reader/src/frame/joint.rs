@@ -29,6 +29,9 @@ impl Parser<'_> {
         });
         if joint == Joint::And && (into || aside) && carry.frame.is_some() {
             (carry.preposition, carry.relation) = (None, None);
+            if aside {
+                self.goes_aside(carry);
+            }
             return;
         }
         // "driving on the right, and overlapping its lane, the van passed": more of who drives.
@@ -117,6 +120,16 @@ impl Parser<'_> {
         if joint != Joint::And && !matches!(next, Some(Chunk::Noun(_) | Chunk::Piece(_) | Chunk::Pronoun)) {
             // "while stopped", "before turning": of whom the clause is about, or of who is named next.
             carry.has_verb = carry.subject.is_some();
+        }
+    }
+
+    /// "moved forward and to the left": over, besides.
+    fn goes_aside(&mut self, carry: &mut Carry) {
+        let Some(frame) = carry.frame.map(|frame| self.frames[frame].clone()) else { return };
+        let moves = matches!(frame.sense, Sense::Act(Act::Follow | Act::SetOff | Act::Accelerate));
+        if moves && frame.who != Some(SUBJECT) {
+            self.frames.push(Frame { sense: Sense::Act(Act::Drift), side: None, ..frame });
+            carry.frame = Some(self.frames.len() - 1);
         }
     }
 

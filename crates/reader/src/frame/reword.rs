@@ -1,11 +1,12 @@
 //! Phrases that say what other words of the lexicon say, put in those before anything is read: "while at a complete stop" stood, "changed from
 //! the right lane" changed lanes, "Acme was driving" is its vehicle. The places of the tokens stay.
 
-use crate::lexicon::{Lexicon, Meaning};
+use crate::lexicon::{Lexicon, Meaning, Sense};
 use crate::token::{Token, TokenKind};
 
 /// Rewords the tokens of a narrative.
 pub(super) fn apply(tokens: &mut Vec<Token>) {
+    join_most(tokens);
     name_system(tokens);
     hold_by_hand(tokens);
     name_passenger_cars(tokens);
@@ -18,7 +19,19 @@ pub(super) fn apply(tokens: &mut Vec<Token>) {
     part_owners(tokens);
 }
 
-/// "The system issued a brake command", "the ADS braked": the vehicle that it drives.
+/// "the right most lane": one word.
+fn join_most(tokens: &mut Vec<Token>) {
+    for at in (1..tokens.len()).rev() {
+        let named = tokens[at].text == "most" && matches!(tokens[at - 1].text.as_str(), "left" | "right");
+        if named && tokens.get(at + 1).is_some_and(|next| next.kind == TokenKind::Word && next.text != "of") {
+            tokens[at - 1].text.push_str("most");
+            tokens[at - 1].end = tokens[at].end;
+            tokens.remove(at);
+        }
+    }
+}
+
+/// "The system issued a brake command", "the ADS came to a stop": the vehicle that it drives.
 fn name_system(tokens: &mut [Token]) {
     const DOES: [&str; 16] = [
         "issued",
@@ -41,10 +54,53 @@ fn name_system(tokens: &mut [Token]) {
     for at in 1..tokens.len().saturating_sub(2) {
         let named = matches!(tokens[at].text.as_str(), "system" | "ads") && tokens[at - 1].text == "the";
         let adverb = usize::from(tokens[at + 1].text.ends_with("ly"));
-        if named && DOES.contains(&tokens[at + 1 + adverb].text.as_str()) {
+        let verb = at + 1 + adverb;
+        if named && (DOES.contains(&tokens[verb].text.as_str()) || drives(tokens, verb)) {
             "av".clone_into(&mut tokens[at].text);
         }
     }
+}
+
+/// Whether a verb here is one of what drives and stands: "came to a stop", "was turning left". "Turned off", "was running" are not.
+fn drives(tokens: &[Token], at: usize) -> bool {
+    const STEMS: [&str; 29] = [
+        "stop",
+        "slow",
+        "brak",
+        "came",
+        "proceed",
+        "drove",
+        "driv",
+        "travel",
+        "turn",
+        "revers",
+        "backed",
+        "roll",
+        "yield",
+        "chang",
+        "merg",
+        "approach",
+        "accelerat",
+        "pull",
+        "mov",
+        "crept",
+        "inch",
+        "swerv",
+        "veer",
+        "steer",
+        "drift",
+        "pass",
+        "cross",
+        "wait",
+        "made",
+    ];
+    let at = at + usize::from(matches!(tokens[at].text.as_str(), "was" | "had"));
+    let word = |at: usize| tokens.get(at).map_or("", |token| token.text.as_str());
+    let moves = |sense| matches!(sense, Sense::Act(_) | Sense::Sided(..) | Sense::Approach | Sense::Yield);
+    let found =
+        Lexicon::get().longest(tokens, at, |meaning| matches!(meaning, Meaning::Verb(sense, _) if moves(sense)));
+    let switched = |length: usize| matches!(word(at + length), "off" | "on" | "itself" | "down" | "online" | "offline");
+    STEMS.iter().any(|stem| word(at).starts_with(stem)) && found.is_some_and(|found| !switched(found.length))
 }
 
 /// "a hand held stop sign", "holding up a stop sign": a paddle, and no sign that stands there.

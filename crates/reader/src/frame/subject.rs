@@ -306,7 +306,9 @@ impl Parser<'_> {
                     .iter()
                     .any(|token| matches!(token.text.as_str(), "partially" | "partly" | "slightly"));
         let mention = Mention { actor: who, piece: None, person: None, end: last.end };
-        ((stood || moves) && apart && so(verb.word(self))).then_some((mention, stood))
+        // "a pickup traveling along, towing a boat".
+        let tows = moves && verb.sense == Sense::Tow;
+        ((stood || moves) && apart && (so(verb.word(self)) || tows)).then_some((mention, stood && !tows))
     }
 
     /// "came upon a truck, which carried a pole, stopped in the road": of the truck. "It yielded to a truck, which turned, stopped, and

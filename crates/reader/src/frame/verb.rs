@@ -10,7 +10,7 @@ use super::sided;
 use crate::chunk::{Chunk, Joint, Placed};
 use crate::lexicon::{Form, Occupant, Progress, Sense};
 use crate::world::SUBJECT;
-use recrash_model::account::Act;
+use recrash_model::account::{Act, Kind};
 
 impl Parser<'_> {
     /// A verb begins a frame.
@@ -24,6 +24,7 @@ impl Parser<'_> {
             return;
         }
         let mut verb = Spoken { sense, form, all, at };
+        self.comes_loose(&verb, carry);
         let stops = verb.sense == Sense::Act(Act::Stop);
         verb.sense = self.sense_here(&verb, carry);
         // What did not end in a standstill was begun.
@@ -83,6 +84,18 @@ impl Parser<'_> {
         }
         carry.has_verb |= finite && !described || unnamed || carry.stranger;
         self.carry_on(&verb, number, leads, carry);
+    }
+
+    /// "towing a trailer. ... The trailer came loose": from here on it is one by itself.
+    fn comes_loose(&mut self, verb: &Spoken<'_>, carry: &mut Carry) {
+        let named = verb.at.checked_sub(1).map(|at| &verb.all[at].chunk);
+        let trailer = matches!(named, Some(Chunk::Noun(noun)) if noun.kind == Some(Kind::Trailer));
+        let Some(subject) = carry.subject.as_mut().filter(|_| trailer && verb.sense == Sense::Act(Act::Fall)) else {
+            return;
+        };
+        if let Some(loose) = self.world.let_go(subject.actor) {
+            subject.actor = loose;
+        }
     }
 
     /// "began to", "attempted to", "was waiting to": how far the next verb came. Whether this one tells it.

@@ -33,7 +33,7 @@ const RULES: [Rule; 15] = [
     World::behind_own_name,
     World::own_truck,
     World::own_tractor,
-    World::second_again,
+    World::counted_again,
     World::another,
     World::brought_on,
     World::group,
@@ -164,10 +164,11 @@ impl World {
     }
 
     /// "A second van ..., and it hit a second van": named so once more.
-    fn second_again(&mut self, sought: &Sought<'_>) -> Option<Meant> {
+    fn counted_again(&mut self, sought: &Sought<'_>) -> Option<Meant> {
         let noun = sought.noun;
-        let known = || self.latest(|known| known.second && sought.fits(known) && known.several == noun.several);
-        if noun.second { known().map(Meant::Known) } else { None }
+        let ordinal = noun.ordinal?;
+        self.latest(|known| known.ordinal == Some(ordinal) && sought.fits(known) && known.several == noun.several)
+            .map(Meant::Known)
     }
 
     /// "Another van" is a second one of a kind: the announced one only where nobody of the kind was met. "The second van" may be

@@ -29,8 +29,8 @@ pub struct Known {
     pub number: Option<u8>,
     /// "A second one", "another": it was brought on as another one of its kind.
     pub another: bool,
-    /// It was brought on as the second.
-    pub second: bool,
+    /// It was brought on as the second, or so.
+    pub ordinal: Option<u8>,
     /// Others are told to stand between it and the subject vehicle.
     pub farther: bool,
     /// It was brought on as another one with a name of the subject vehicle.
@@ -250,10 +250,28 @@ impl World {
             Some(Kind::TowTruck) => Kind::TowTruck,
             _ => Kind::PickupWithTrailer,
         };
-        let trailer = self.actors[towed].kind == Some(Kind::Trailer);
+        // "A pickup pulling a food truck trailer": no pickup pulls a truck.
+        let pulled = [Kind::Trailer, Kind::SemiTrailerTruck];
+        let trailer = match self.actors[tower].kind {
+            Some(Kind::Pickup) => self.actors[towed].kind.is_some_and(|kind| pulled.contains(&kind)),
+            _ => self.actors[towed].kind == Some(Kind::Trailer),
+        };
         if tower != SUBJECT && trailer {
             self.actors[tower].kind = Some(kind);
         }
+    }
+
+    /// Who towed a trailer tows it no more: the trailer.
+    pub fn let_go(&mut self, tower: Actor) -> Option<Actor> {
+        let towed = |known: &Known| known.towed_by == Some(tower) && known.kind == Some(Kind::Trailer);
+        let loose = self.actors.iter().position(towed)?;
+        self.actors[loose].towed_by = None;
+        let known = &mut self.actors[tower];
+        known.kind = match known.kind {
+            Some(Kind::PickupWithTrailer) => Some(Kind::Pickup),
+            kind => kind,
+        };
+        Some(loose)
     }
 
     /// Who is meant by `it`.
@@ -269,9 +287,9 @@ impl World {
 
     fn add(&mut self, noun: &Noun) -> Actor {
         let another = noun.adjectives.contains(&Adjective::Another);
-        let (several, second, namesake) = (noun.several, noun.second, noun.namesake);
+        let (several, ordinal, namesake) = (noun.several, noun.ordinal, noun.namesake);
         let farther = self.apart;
-        self.actors.push(Known { several, another, second, namesake, farther, ..Known::default() });
+        self.actors.push(Known { several, another, ordinal, namesake, farther, ..Known::default() });
         self.actors.len() - 1
     }
 

@@ -124,9 +124,12 @@ fn partner_pace(told: &Told, staging: &Staging, (ego, ego_m, before_s): (&Pace, 
                 Origin::Driveway { .. } => beside::out_m(told, staging).max(PULL_OUT_M),
                 _ => PULL_OUT_M,
             };
-            let moving_s = (2.0 * way_m / cp.speed_mps * 10.0).round() / 10.0;
-            let go = Deed::Speed { to_mps: cp.speed_mps, rate_mps2: cp.speed_mps / moving_s };
-            Pace { speed_mps: 0.0, acts: vec![when(contact_s - moving_s, go)], driven_m: 0.5 * cp.speed_mps * moving_s }
+            // Told not to have stopped before it came out, it rolled.
+            let from_mps = if cp.comes_out_rolling { ROLLS_OUT_MPS.min(cp.speed_mps) } else { 0.0 };
+            let moving_s = (2.0 * way_m / (from_mps + cp.speed_mps) * 10.0).round() / 10.0;
+            let go = Deed::Speed { to_mps: cp.speed_mps, rate_mps2: (cp.speed_mps - from_mps).max(0.05) / moving_s };
+            let driven_m = 0.5 * (from_mps + cp.speed_mps) * moving_s + from_mps * (contact_s - moving_s);
+            Pace { speed_mps: from_mps, acts: vec![when(contact_s - moving_s, go)], driven_m }
         }
         // Who stood and turned has room for its turn.
         ContactState::Moving if cp.stood_first && matches!(cp.turning, Turning::Left | Turning::Right) => {
@@ -162,6 +165,9 @@ const SWINGS_BACK_M: f64 = 6.0;
 
 /// Nobody backs on a tighter circle. [m]
 const LEAST_BACK_M: f64 = 5.0;
+
+/// How fast somebody rolls along a lot or a driveway who comes out of it without a stop. [m/s]
+const ROLLS_OUT_MPS: f64 = 2.0;
 
 fn from_stand(origin: Origin) -> bool {
     !matches!(origin, Origin::Cross { .. } | Origin::Behind | Origin::Opposite)

@@ -116,6 +116,7 @@ pub(super) fn side(party: &Party, kind: Option<Kind>, assumed: &mut Vec<String>,
         goes_round: false,
         returns: returns(party),
         gains,
+        comes_out_rolling: does_not_stop(party),
         reacts: false,
         stopped_aside,
         turns_later: false,
@@ -238,6 +239,12 @@ fn went_on(party: &Party) -> bool {
     let backed = before().filter(|fact| fact.act == Act::Reverse).map(|fact| fact.step).max();
     let goes = |act: Act| matches!(act, Act::Enter | Act::Cross | Act::Pass);
     backed.is_some_and(|backed| before().any(|fact| fact.step > backed && goes(fact.act)))
+}
+
+/// Whether words tell that somebody did not stop where it had to give way.
+fn does_not_stop(party: &Party) -> bool {
+    let stop = |source: &Source| matches!(source, Source::Words { text, .. } if text.to_lowercase().contains("stop"));
+    party.acts.iter().any(|fact| fact.act == Act::FailToYield && !fact.after_contact && stop(&fact.source))
 }
 
 /// Whether the last change of speed before the contact that is told is a gain.

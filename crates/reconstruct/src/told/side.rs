@@ -49,6 +49,8 @@ pub(crate) struct Side {
     pub(crate) slowed_from: Option<Slowed>,
     /// It brakes, or swerves, for the turn that the other has begun: late and hard.
     pub(crate) reacts: bool,
+    /// It is told to have come out onto the road without a stop.
+    pub(crate) comes_out_rolling: bool,
     /// It is told to have gained speed while it drove, and to be under way at the contact.
     pub(crate) gains: bool,
     /// What it did last, ended by what it does at the contact, where that is more than the state says: of the ego.

@@ -27,6 +27,9 @@ const MACHINE: &str = "The AV was stopped on Elm Street. A skid steer loader to 
 const NARROW: &str = "The AV was stopped on a narrow street facing north when a sedan traveling southbound made contact with the front of the AV with \
                       its front.";
 
+const ROLLS_OUT: &str = "The AV was traveling north on Elm Street when a pickup left a parking lot on the left without first stopping and turned right. \
+                         The front of the pickup made contact with the left side of the AV.";
+
 fn partner(made: &Reconstruction) -> &ActorTrack {
     made.rollout.actors.iter().find(|track| track.id == "cp").expect("a partner")
 }
@@ -35,6 +38,17 @@ fn lanes(made: &Reconstruction) -> [usize; 2] {
     let MapSpec::G(map) = &made.draft.map else { panic!("a map of roads") };
     [&map.roads[0].right, &map.roads[0].left]
         .map(|strips| strips.iter().filter(|strip| strip.kind == StripKind::Driving).count())
+}
+
+#[test]
+fn who_comes_out_without_stopping_has_not_stood() {
+    let least = |words: &str| {
+        let made = made(&story(words));
+        assert!(made.is_true(), "{:?}", made.verdict);
+        partner(&made).states.iter().take(90).map(|state| state.velocity().length()).fold(f64::MAX, f64::min)
+    };
+    let stops = ROLLS_OUT.replace(" without first stopping", "");
+    assert!(least(ROLLS_OUT) > 1.5 && least(&stops) < 0.1, "{} {}", least(ROLLS_OUT), least(&stops));
 }
 
 #[test]

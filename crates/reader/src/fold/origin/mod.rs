@@ -100,7 +100,11 @@ pub(crate) fn ahead(reading: &Reading<'_>, account: &Account) -> Option<Fact<boo
     // Whoever changes lanes in front of it was ahead, and so was whom it came near.
     let cuts_in = || {
         let changes = |frame: &Frame| matches!(frame.act(), Some(Act::LaneChange | Act::Enter)) && frame.happened();
-        let in_front = |frame: &Frame| frame.relations.iter().any(|(relation, _)| *relation == Relation::Ahead);
+        let in_front = |frame: &Frame| {
+            let told = frame.relations.iter().any(|(relation, _)| *relation == Relation::Ahead);
+            // Who passed somebody before that came from farther back.
+            told || cuts_off(reading, frame) && !reading.did(actor, Act::Pass)
+        };
         let found = reading.before(actor).find(|(_, frame)| changes(frame) && in_front(frame));
         found.map(|(number, _)| (number, Relation::Ahead))
     };
@@ -112,6 +116,13 @@ pub(crate) fn ahead(reading: &Reading<'_>, account: &Account) -> Option<Fact<boo
     let (number, relation) = told_on_its_line.or_else(of_itself).or_else(cuts_in).or_else(neared)?;
     let (first, end) = reading.window(number);
     Some(Fact { value: relation == Relation::Ahead, source: reading.words(first, end) })
+}
+
+/// "cut in front of the AV", "cut it off": the verb itself says where.
+fn cuts_off(reading: &Reading<'_>, frame: &Frame) -> bool {
+    let words: Vec<&str> =
+        reading.story.tokens[frame.first..frame.end].iter().map(|token| token.text.as_str()).collect();
+    matches!(words.as_slice(), ["cut" | "cutting" | "cuts", "in" | "off", ..])
 }
 
 /// "A van in the left lane and in front of the AV began to change lanes": told of whom, and not with what it did. With the number of the

@@ -351,7 +351,9 @@ impl<'a> Case<'a> {
             let value = if across { Origin::Cross { side } } else { Origin::Beside { side } };
             return told_as(value, self.words_of(Act::Reverse));
         }
-        if has_zone(&self.account.sv, Z::is_front) && !matches!(self.turn, Some(2..=6)) {
+        // "The trailer came loose and rolled back westbound": the way it rolled, and not the one it faced.
+        let loose = self.did(Act::Fall) && self.turn == Some(4);
+        if has_zone(&self.account.sv, Z::is_front) && (loose || !matches!(self.turn, Some(2..=6))) {
             return by_rule(Origin::Ahead, "who goes backwards into the front was ahead");
         }
         None

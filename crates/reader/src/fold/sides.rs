@@ -1,0 +1,199 @@
+//! To which side an act goes.
+
+use super::Reading;
+use crate::frame::{Frame, sided};
+use crate::lexicon::{Form, Sense};
+use crate::world::{Actor, SUBJECT};
+use recrash_model::account::{Act, ActFact, LaneWord, LeftRight};
+use recrash_model::template::Movement;
+
+/// To which side an act goes: as told with it, else by the lane that it leads into or begins in, else by the column.
+pub(super) fn side_of(reading: &Reading<'_>, actor: Actor, number: usize, act: Act) -> Option<LeftRight> {
+    let frame = &reading.story.frames[number];
+    let told =
+        || frame.side.or_else(|| to_lane(reading, actor, frame, act)).or_else(|| to_that_lane(reading, frame, act));
+    let turn_lane = || match reading.story.world.actors[actor].lane?.0 {
+        LaneWord::LeftTurn => Some(LeftRight::Left),
+        LaneWord::RightTurn => Some(LeftRight::Right),
+        _ => None,
+    };
+    let changes = act == Act::LaneChange;
+    let entered = || if changes { side_of_lane_entered(reading, frame) } else { None };
+    let signalled = || if moves_over(act) { side_signalled(reading, frame) } else { None };
+    let goes_on = || if changes { side_as_before(reading, number) } else { None };
+    let passes = || if changes { side_of_pass(reading, number) } else { None };
+    let side = if sided(act) { told().or_else(entered).or_else(signalled) } else { None };
+    let side = side.or_else(goes_on).or_else(passes);
+    side.or_else(|| into_turn_lane(reading, actor, frame, act))
+        .or_else(|| if act == Act::Turn { turn_lane() } else { None })
+        .or_else(|| turned_by_column(reading, actor, act))
+}
+
+/// Acts that lead over to a side of the way.
+const fn moves_over(act: Act) -> bool {
+    matches!(act, Act::LaneChange | Act::Drift | Act::PullOut)
+}
+
+/// "put on its left turn signal and began to change lanes": the side for which it had signalled, with nothing done between.
+fn side_signalled(reading: &Reading<'_>, frame: &Frame) -> Option<LeftRight> {
+    let (tokens, frames) = (&reading.story.tokens, &reading.story.frames);
+    let word = |at: usize| tokens[at].text.as_str();
+    let first = reading.story.sentences[frame.sentence.saturating_sub(1)].first;
+    let lamp = |at: &usize| matches!(word(*at), "signal" | "indicator" | "blinker" | "blinkers" | "indicators");
+    let at = (first + 2..frame.first).rev().find(lamp)?;
+    let side = (at - 2..at).find_map(|at| match word(at) {
+        "left" => Some(LeftRight::Left),
+        "right" => Some(LeftRight::Right),
+        _ => None,
+    })?;
+    let of_signal = frames.iter().rfind(|other| other.first <= at)?;
+    let between = |other: &Frame| other.first > at && other.first < frame.first && other.act().is_some();
+    let own = of_signal.who == frame.who && of_signal.sense == Sense::Other && of_signal.happened();
+    (own && !frames.iter().any(between)).then_some(side)
+}
+
+/// "signalled to change lanes to the right turn lane. While changing lanes, ...", "continued to change lanes", "moved to the left to change
+/// lanes": to the side told before.
+fn side_as_before(reading: &Reading<'_>, number: usize) -> Option<LeftRight> {
+    let (tokens, frames) = (&reading.story.tokens, &reading.story.frames);
+    let frame = &frames[number];
+    let word = |back: usize| frame.first.checked_sub(back).map_or("", |at| tokens[at].text.as_str());
+    let meanwhile = word(1) == "while" && frame.form == Form::Ing;
+    let goes_on = meanwhile || (1..3).any(|back| word(back).starts_with("continu"));
+    let over = |other: &&Frame| {
+        other.who == frame.who && other.side.is_some() && !other.negated && other.act().is_some_and(moves_over)
+    };
+    let purpose = word(1) == "to"
+        && number.checked_sub(1).is_some_and(|last| over(&&frames[last]) && frames[last].sentence == frame.sentence);
+    frames[..number].iter().rfind(over).filter(|_| goes_on || purpose)?.side
+}
+
+/// "attempted to change lanes and pass to the left of it": to the side on which it passes.
+fn side_of_pass(reading: &Reading<'_>, number: usize) -> Option<LeftRight> {
+    let frame = &reading.story.frames[number];
+    let next = reading.story.frames.get(number + 1)?;
+    let same = next.sentence == frame.sentence && next.who == frame.who && next.act() == Some(Act::Pass);
+    next.side.filter(|_| same && next.happened())
+}
+
+/// "moved right, and then recentered itself": back to the other side.
+pub(super) fn back_to_the_middle(
+    reading: &Reading<'_>,
+    frame: &Frame,
+    act: Act,
+    before: &[ActFact],
+) -> Option<LeftRight> {
+    let words = &reading.story.tokens[frame.first..frame.end];
+    let has = |word: &str| words.iter().any(|token| token.text.starts_with(word));
+    let middle = has("recenter") || (has("center") || has("middle")) && !has("line") && !has("cross");
+    let aside = |fact: &&ActFact| matches!(fact.act, Act::Drift | Act::LaneChange | Act::Swerve);
+    let last = before.iter().rfind(aside)?;
+    last.side.map(LeftRight::other).filter(|_| middle && act == Act::Drift)
+}
+
+/// "began to move toward that lane": the lane that was named last.
+fn to_that_lane(reading: &Reading<'_>, frame: &Frame, act: Act) -> Option<LeftRight> {
+    let tokens = &reading.story.tokens;
+    let end = reading.story.sentences[frame.sentence].end.min(frame.end + 4);
+    let that = (frame.first..end)
+        .any(|at| tokens[at].text == "that" && tokens.get(at + 1).is_some_and(|next| next.text == "lane"));
+    if !that || !matches!(act, Act::Drift | Act::LaneChange) {
+        return None;
+    }
+    let from = reading.story.sentences[frame.sentence.saturating_sub(1)].first;
+    (from..frame.first).rev().filter(|at| tokens[*at].text == "lane").find_map(|lane| {
+        tokens[lane.saturating_sub(3)..lane].iter().find_map(|token| match token.text.as_str() {
+            "left" | "leftmost" => Some(LeftRight::Left),
+            "right" | "rightmost" => Some(LeftRight::Right),
+            _ => None,
+        })
+    })
+}
+
+/// The tokens from a verb of entering up to the lane that is entered.
+pub(super) fn lane_entered(reading: &Reading<'_>, frame: &Frame) -> Option<(usize, usize)> {
+    const NAMES: [&str; 16] = [
+        "turn",
+        "turning",
+        "bike",
+        "bicycle",
+        "bus",
+        "center",
+        "left",
+        "right",
+        "leftmost",
+        "rightmost",
+        "number",
+        "singular",
+        "adjacent",
+        "next",
+        "second",
+        "third",
+    ];
+    let word = |at: usize| reading.story.tokens[at].text.as_str();
+    let end = reading.story.sentences[frame.sentence].end.min(frame.first + LANE_WITHIN);
+    let stops =
+        |at: &usize| matches!(word(*at), "," | "and" | "intersection" | "junction" | "from" | "at" | "of" | "as");
+    let lane = (frame.first + 1..end).take_while(|at| !stops(at)).find(|&at| word(at) == "lane")?;
+    let partly = frame.first.checked_sub(1).is_some_and(|at| matches!(word(at), "partially" | "partly"));
+    let named = (frame.first..lane).any(|at| NAMES.contains(&word(at)));
+    (named && !partly).then_some((frame.first, lane))
+}
+
+/// The name of a lane that is entered is no longer, with the verb. [tokens]
+const LANE_WITHIN: usize = 10;
+
+/// The side of a lane that is entered: that of a turn lane, which lies outside, or as told behind it.
+fn side_of_lane_entered(reading: &Reading<'_>, frame: &Frame) -> Option<LeftRight> {
+    let (first, lane) = lane_entered(reading, frame)?;
+    let end = reading.story.sentences[frame.sentence].end.min(lane + 5);
+    reading.story.tokens[first..end].iter().find_map(|token| match token.text.as_str() {
+        "left" | "leftmost" => Some(LeftRight::Left),
+        "right" | "rightmost" | "bike" | "bicycle" | "bus" => Some(LeftRight::Right),
+        _ => None,
+    })
+}
+
+/// The side to which the subject vehicle changed lanes, by the column, when it "proceeded into the right turn lane".
+fn into_turn_lane(reading: &Reading<'_>, actor: Actor, frame: &Frame, act: Act) -> Option<LeftRight> {
+    let column = reading.record.sv_movement.known() == Some(Movement::ChangingLanes);
+    if act != Act::Enter || actor != SUBJECT || !column || !frame.happened() {
+        return None;
+    }
+    let words: Vec<&str> =
+        reading.story.tokens[frame.first..frame.end].iter().map(|token| token.text.as_str()).collect();
+    let has = |word: &str| words.contains(&word);
+    match (has("turn") && has("lane"), has("left"), has("right")) {
+        (true, true, false) => Some(LeftRight::Left),
+        (true, false, true) => Some(LeftRight::Right),
+        _ => None,
+    }
+}
+
+/// The side of a lane change that is told by lanes: from the left lane into the centre.
+fn to_lane(reading: &Reading<'_>, actor: Actor, frame: &Frame, act: Act) -> Option<LeftRight> {
+    if !matches!(act, Act::LaneChange | Act::Drift) {
+        return None;
+    }
+    // A lane that is told behind it is not the one that it left.
+    let own =
+        reading.story.world.actors[actor].lane.filter(|(_, first, _)| *first < frame.first).map(|(lane, ..)| lane);
+    let into = frame.lane.map(|(lane, ..)| lane);
+    match (own, into) {
+        (Some(LaneWord::Left), Some(LaneWord::Center)) => Some(LeftRight::Right),
+        (Some(LaneWord::Right), Some(LaneWord::Center)) => Some(LeftRight::Left),
+        (_, Some(LaneWord::Opposing)) => Some(LeftRight::Left),
+        _ => None,
+    }
+}
+
+/// The side of a turn that only the column tells.
+fn turned_by_column(reading: &Reading<'_>, actor: Actor, act: Act) -> Option<LeftRight> {
+    let own = reading.record.sv_movement.known().filter(|_| actor == SUBJECT);
+    let other = reading.record.cp_movement.known().filter(|_| Some(actor) == reading.contacts.partner);
+    match own.or(other).filter(|_| act == Act::Turn)? {
+        Movement::LeftTurn => Some(LeftRight::Left),
+        Movement::RightTurn => Some(LeftRight::Right),
+        _ => None,
+    }
+}
