@@ -19,6 +19,7 @@ impl Doing {
     /// How long before an act of the other one it may begin that is told behind that. [steps]
     fn before_other(&self) -> usize {
         match self.act {
+            Act::SetOff if self.implied => BEFORE_OTHER + 2 * FOUND_EARLY,
             Act::SetOff if !self.begun => JUST_BEFORE_OTHER,
             _ => BEFORE_OTHER + 2 * self.found_early(),
         }

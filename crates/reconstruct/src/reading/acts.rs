@@ -1,5 +1,6 @@
 //! What each of the two is told to have done before the contact, one act after the other.
 
+use crate::reading::words::text;
 use crate::told::doing::{Doing, least};
 use crate::told::zones::side_of;
 use recrash_model::account::{
@@ -27,7 +28,10 @@ pub(super) fn told(party: &Party, state: ContactState) -> Vec<Doing> {
             // It stands there.
             Act::Stop if standing => true,
             // Who turned on its way to a light or a sign did so on another road, or has yet to.
-            Act::Turn => at_line && !stood && acts[number..].iter().any(|later| stands(later.act)),
+            Act::Turn => {
+                at_line && !stood && acts[number..].iter().any(|later| stands(later.act)) || turns_again(fact, &acts)
+            }
+            Act::UTurn => is_of_several_points(fact, state),
             Act::Park => list.last().is_some_and(|last| stands(last.act)),
             // So did who came out of a lot and drove along since.
             Act::PullOut => list.is_empty() && told_of(&party.movement) == Some(Movement::Straight),
@@ -48,11 +52,14 @@ pub(super) fn told(party: &Party, state: ContactState) -> Vec<Doing> {
         let (step, after_other) = (fact.step, fact.after_other);
         // "It then began to turn": it had set off for that, behind what the other did.
         if standing && !state.stands() && after_other.is_some() && sets_off_for(fact.act) {
-            list.push(Doing { act: Act::SetOff, side: None, begun: false, over: false, step, after_other });
+            let set_off =
+                Doing { act: Act::SetOff, side: None, begun: false, over: false, implied: true, step, after_other };
+            list.push(set_off);
         }
         standing = stands(fact.act) || standing && waits;
         if !skipped {
-            list.push(Doing { act: fact.act, side: fact.side, begun: fact.begun, over, step, after_other });
+            let (act, side, begun) = (fact.act, fact.side, fact.begun);
+            list.push(Doing { act, side, begun, over, implied: false, step, after_other });
         }
     }
     // "Stopped at the kerb" of who pulls out: it stood there.
@@ -67,6 +74,19 @@ pub(super) fn told(party: &Party, state: ContactState) -> Vec<Doing> {
     }
     list.dedup_by_key(|doing| (doing.act, doing.side, doing.begun));
     list
+}
+
+/// Whether somebody is told to have turned to the other side after this turn: that was the road on which it came, and which it left.
+fn turns_again(turn: &ActFact, acts: &[&ActFact]) -> bool {
+    let other = turn.side.map(LeftRight::other);
+    let again = |later: &&&ActFact| later.act == Act::Turn && later.step > turn.step && later.side == other;
+    other.is_some() && acts.iter().any(|later| again(&later))
+}
+
+/// Whether somebody who stands or backs was turning round in several goes: that is one of them, and no whole turn.
+pub(super) fn is_of_several_points(fact: &ActFact, state: ContactState) -> bool {
+    let parts = state.stands() || state == ContactState::Reversing;
+    fact.act == Act::UTurn && parts && text(&fact.source).contains("point")
 }
 
 /// Whether somebody who stood has set off to do this.

@@ -164,6 +164,7 @@ impl Told {
         };
         this.queued = this.was_in_queue(account, partner);
         this.courses(&account.sv, partner);
+        this.leaves_road(partner);
         this.phases();
         this.gives_way_to_merge = this.stops_for_merge(&account.sv, partner);
         this.wanted = others::wanted(&this, account);

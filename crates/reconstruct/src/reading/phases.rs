@@ -1,5 +1,6 @@
 //! What somebody is told to have done before the last thing that it does.
 
+use crate::reading::acts;
 use crate::told::phase::Phase;
 use recrash_model::account::{Act, ActFact, ContactState, Party, Standing};
 
@@ -31,6 +32,9 @@ pub(super) fn told(party: &Party, state: ContactState) -> Vec<Phase> {
         if fact.begun && !(drives_aside(fact.act) && list.last() == Some(&Phase::Stands) && stops_next) {
             continue;
         }
+        if acts::is_of_several_points(fact, state) {
+            continue;
+        }
         went_on |= fact.act == Act::Slow && !list.is_empty();
         slowed = fact.act == Act::Slow || slowed && fact.act != Act::Stop;
         let phase = match fact.act {
@@ -48,6 +52,8 @@ pub(super) fn told(party: &Party, state: ContactState) -> Vec<Phase> {
             | Act::PullOver => Phase::Drives,
             // Of who stood, these tell how it came there.
             Act::Follow | Act::Slow if list.is_empty() => Phase::Drives,
+            // Between two stands it drove aside.
+            Act::Drift if list.last() == Some(&Phase::Stands) && stops_next => Phase::Drives,
             Act::Reverse => Phase::Reverses,
             _ => continue,
         };

@@ -11,6 +11,8 @@ pub(crate) struct Doing {
     pub(crate) begun: bool,
     /// A turn is told behind it: it was over then.
     pub(crate) over: bool,
+    /// No words tell it: what is told behind it begins with it.
+    pub(crate) implied: bool,
     /// Its place in the order of all acts, and that of the other one's act behind which the words put it.
     pub(crate) step: u32,
     pub(crate) after_other: Option<u32>,
