@@ -77,7 +77,9 @@ fn partner_pace(told: &Told, staging: &Staging, (ego, ego_m, before_s): (&Pace, 
     }
     let same_way = matches!(told.origin, Origin::Behind | Origin::Ahead);
     let follows = matches!(told.origin, Origin::Behind | Origin::Beside { .. });
-    let follows = follows && told.ahead != Some(true) && !told.sv.reacts;
+    // Who stood has not come along behind it; nor has whom the ego passes.
+    let passed = told.sv.acts.iter().any(Doing::is_pass);
+    let follows = follows && told.ahead != Some(true) && !told.sv.reacts && !cp.stood_first && !passed;
     let enters = cp.movement == Some(Movement::EnteringTraffic);
     match cp.state {
         ContactState::Moving if told.gives_way_to_merge && cp.speed_mps < ego.speed_mps - 1.0 => {
@@ -190,12 +192,13 @@ fn beside_from_line(told: &Told, staging: &Staging) -> Option<Pace> {
     start_over(told.contact_s, cp.speed_mps, ground.beside(staging.cp.position).0 - line_m)
 }
 
-/// Who stood at a signal or a sign on the crossing road sets off from its stop line.
+/// Who stood at a signal or a sign on the crossing road, or has come into the junction since, sets off from its stop line.
 fn cross_from_line(told: &Told, staging: &Staging) -> Option<Pace> {
     let (cp, ground) = (&told.cp, &staging.ground);
     let Origin::Cross { side } = told.origin else { return None };
     let stood = cp.stood_first || cp.state == ContactState::SettingOff;
-    if !stood || cp.control.is_none() || !ground.junction || cp.state == ContactState::Reversing {
+    let at_line = cp.control.is_some() || cp.enters();
+    if !stood || !at_line || !ground.junction || cp.state == ContactState::Reversing {
         return None;
     }
     let line_m = corner_m(ground.lanes) + AT_LINE_M + 0.5 * size_of(cp).0;

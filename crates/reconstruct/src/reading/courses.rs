@@ -56,7 +56,8 @@ impl Told {
         // Whose turn no words tell has yet to begin it where it is hit from behind.
         let unsaid = sv.movement.as_ref().is_some_and(|movement| !matches!(movement.source, Source::Words { .. }))
             && !sv.acts.iter().any(|fact| fact.act == Act::Turn);
-        let slows = self.sv.slowed_from.is_some() || self.sv.state == ContactState::Stopped;
+        let slows =
+            self.sv.slowed_from.is_some() || matches!(self.sv.state, ContactState::Stopped | ContactState::SettingOff);
         if unsaid && slows && self.origin == Origin::Behind && self.crash_type == CrashType::FrontToRear {
             let turns = matches!(self.sv.turning, Turning::Left | Turning::Right);
             self.sv.turns_later = turns && !self.enters();
