@@ -190,8 +190,12 @@ impl Way<'_> {
         let Other { states, half_m, beyond_m } = self.other?;
         let ahead_m = |at: usize| self.ahead_m(states, at);
         let left = |at: usize| {
-            let other = &states[at.min(states.len() - 1)];
-            Vec2::from_heading(other.heading).cross(self.states[at].position() - other.position()) > 0.0
+            let (own, other) = (&self.states[at], &states[at.min(states.len() - 1)]);
+            let turned = math::wrap_angle(own.heading - other.heading).abs();
+            let across = (ALONG_RAD..=math::PI - ALONG_RAD).contains(&turned);
+            // One that stands across has no side of its own there.
+            let along = if across { own.heading } else { other.heading };
+            Vec2::from_heading(along).cross(own.position() - other.position()) > 0.0
         };
         let least_m = if doing.is_pass_before_turn() { beyond_m } else { BESIDE_M - half_m };
         let behind = (from..self.last()).find(|at| ahead_m(*at) < -half_m)?;

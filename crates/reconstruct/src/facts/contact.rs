@@ -21,8 +21,8 @@ pub(super) fn is_near(told: &[ContactZone], seen: ContactZone, outline: &Oriente
     zones_off(told, seen) <= 1 && !other_side
 }
 
-/// Who is no farther from the place of the contact is there. [m]
-pub(super) const NEAR_M: f64 = 0.5;
+/// When somebody came to the place of the contact is looked for in such steps. [s]
+const LOOKS_S: f64 = 0.02;
 
 /// Who come within this time come together. [s]
 const TOGETHER_S: f64 = 1.0;
@@ -48,16 +48,16 @@ pub(super) fn order(
     time_s: f64,
 ) -> (bool, String) {
     let there_s = |(track, reach_m): (&ActorTrack, f64)| {
-        let until = ((time_s * 10.0).ceil() as usize + 1).min(track.states.len());
+        let until = (time_s / LOOKS_S).round() as usize + 1;
         let covers = |step: &usize| {
-            let outline = track.outline(*step);
+            let outline = outline_at(track, LOOKS_S * *step as f64);
             let local = outline.to_local(point);
             local.x.abs() <= outline.half_length + reach_m && local.y.abs() <= outline.half_width + reach_m
         };
         // Who passed the place before, and came back to it, is there when it is back.
         let last = (0..until).rfind(&covers);
         let since = last.map(|last| (0..last).rfind(|step| !covers(step)).map_or(0, |step| step + 1));
-        since.map_or(time_s, |step| 0.1 * step as f64)
+        since.map_or(time_s, |step| LOOKS_S * step as f64)
     };
     let (ego_s, other_s) = (there_s(ego), there_s(other));
     let earlier_s = other_s - ego_s;

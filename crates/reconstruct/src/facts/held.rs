@@ -2,7 +2,7 @@
 
 use crate::facts::acts::{self, Did};
 use crate::facts::contact::{
-    self, MET_M, NEAR_M, Touch, crash, first_touch, is_near, order, parts_that_touch, swung, toucher, zone_words,
+    self, MET_M, Touch, crash, first_touch, is_near, order, parts_that_touch, swung, toucher, zone_words,
 };
 use crate::facts::junction::Junction;
 use crate::facts::lane::{lane, lane_words};
@@ -214,15 +214,12 @@ pub(crate) fn facts(told: &Told, scenario: &Scenario, rollout: &Rollout) -> Vec<
     }
     if let (Some(first), Some(track)) = (told.order, touch.track) {
         // Who stands there holds what a door of its reaches; a door of the partner's comes there when it opens.
-        let ego_reach_m = if ego_part.is_some() { DOOR_M } else { NEAR_M };
+        let ego_reach_m = if ego_part.is_some() { DOOR_M } else { MET_M };
         let number = rollout.actors.iter().position(|other| other.id == track.id);
         let door = rollout.actors.iter().find(|other| other.part_of.is_some() && other.part_of == number);
-        let (partner, partner_reach_m) = match door.filter(|_| other_part.is_some()) {
-            Some(door) => (door, MET_M),
-            None => (track, NEAR_M),
-        };
+        let partner = door.filter(|_| other_part.is_some()).unwrap_or(track);
         let (shown, observed) =
-            order(first, [(ego_track, ego_reach_m), (partner, partner_reach_m)], geometry.point, touch.time_s);
+            order(first, [(ego_track, ego_reach_m), (partner, MET_M)], geometry.point, touch.time_s);
         fact(CheckKind::Order, shown, first.words().to_owned(), observed);
     }
     let mut held = |kind: CheckKind, expected: String, (result, observed): (CheckResult, String)| {
@@ -241,8 +238,11 @@ pub(crate) fn facts(told: &Told, scenario: &Scenario, rollout: &Rollout) -> Vec<
         [(CheckKind::SvControl, &told.sv, Some(ego_track)), (CheckKind::CpControl, &told.cp, touch.track)]
     {
         if let (Some(said), Some(track)) = (side.control, track) {
-            let arm = signals::own_arm(told, scenario).filter(|_| kind == CheckKind::CpControl);
-            held(kind, signals::words(said), signals::check(said, arm, scenario, track, touch.time_s));
+            let of_partner = kind == CheckKind::CpControl;
+            let arm = signals::own_arm(told, scenario).filter(|_| of_partner);
+            let seen = signals::check(said, arm, scenario, track, touch.time_s);
+            let seen = if of_partner && signals::is_beside_road(told) { signals::where_drawn(seen) } else { seen };
+            held(kind, signals::words(said), seen);
         }
     }
     if told.sv.state.stands() && !told.reasons.is_empty() {

@@ -8,6 +8,7 @@ use recrash_model::geometry::Vec2;
 use recrash_model::metrics::CheckResult;
 use recrash_model::rollout::{ActorTrack, STEP_S};
 use recrash_model::scenario::{Aspect, Control, Device};
+use recrash_model::template::Movement;
 use recrash_roads::{ControlPlacement, Scenario};
 
 /// What changed within this time has just changed. [s]
@@ -57,6 +58,19 @@ pub(super) fn own_arm(told: &Told, scenario: &Scenario) -> Option<&'static str> 
     arm.filter(|arm| scenario.draft().control.iter().any(|control| control.at == *arm))
 }
 
+/// Whether the partner comes by a way that has no stop line in any scene: out of a driveway or a lot, or over a crosswalk.
+pub(super) fn is_beside_road(told: &Told) -> bool {
+    arm_of(told.origin).is_empty() || told.cp.movement == Some(Movement::NmCrossing)
+}
+
+/// What is seen of a signal or a sign of such a one: that there is none on its way is no fault of the way.
+pub(super) fn where_drawn((result, observed): (CheckResult, String)) -> (CheckResult, String) {
+    if observed == NONE { (CheckResult::CannotBeShown, observed) } else { (result, observed) }
+}
+
+/// No line of a signal or a sign is on somebody's way.
+const NONE: &str = "none on its way";
+
 /// Whether a told signal or sign stood before somebody, at its arm where that is known, showed what is told, and was obeyed or not as
 /// told. Who came to a stand for a light that changed did so before it was green.
 pub(super) fn check(
@@ -76,7 +90,7 @@ pub(super) fn check(
     let met = all.filter_map(|(control, placed)| Some((control, line_of(scenario, control, placed)?)));
     let found = met.filter_map(|(control, line)| Some((control, passage(track, &line, until)?))).next();
     let Some((control, passage)) = found else {
-        return (CheckResult::NotShown, "none on its way".to_owned());
+        return (CheckResult::NotShown, NONE.to_owned());
     };
     let is_device = matches!(
         (&control.device, said.device),
