@@ -9,6 +9,7 @@ use recrash_model::account::{
     ContactState, Control as Said, ControlDevice, LeftRight, Obeyed, Origin, SignalState, StandReason,
 };
 use recrash_model::scenario::{Actor, ActorPlan, Aspect, Control, Deed, Device, Phase, Trigger};
+use recrash_model::template::Movement;
 
 /// Longest phase. [s]
 const ALWAYS_S: f64 = 600.0;
@@ -98,9 +99,10 @@ pub(crate) fn devices(told: &Told, ground: &Ground, ego: &ActorPlan, actors: &[A
         };
         let before_s = first_s.unwrap_or(told.contact_s);
         let halt = is_ego.then(|| halts(ego).into_iter().rfind(|halt| halt.stands_s < before_s)).flatten();
-        // Who stood at red, and drives over its line without running it, does so at green.
+        // Who stood at red, and drives over its line without running it, does so at green; who changes lanes there stays before the line.
+        let merges = matches!(told.sv.movement, Some(Movement::ChangingLanes | Movement::Merging)) && !told.enters();
         let drives_on = told.sv.state.stands() && told.sv.turning != Turning::No
-            || told.sv.stood_first && said.obeyed == Some(Obeyed::Yes) && told.origin != Origin::Behind;
+            || told.sv.stood_first && said.obeyed == Some(Obeyed::Yes) && told.origin != Origin::Behind && !merges;
         let stood_there = is_ego && drives_on && said.state == Some(SignalState::Red);
         let state = if stood_there && sets_off_s(ego).is_some() { Some(SignalState::TurnedGreen) } else { said.state };
         // Who turns right, and gives way to crossing traffic, does so at red.

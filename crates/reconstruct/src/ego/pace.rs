@@ -175,9 +175,10 @@ pub(crate) const SWINGS_LATE_M: f64 = 4.5;
 fn from_line(told: &Told, ground: &Ground, sv_s_m: f64) -> Option<Pace> {
     let sv = &told.sv;
     let stops = match sv.control.filter(|said| said.obeyed != Some(Obeyed::No)) {
-        // Who slows for a sign and is not told to have stood has yet to come to it, when it is hit from behind.
+        // Who slows for a sign and is not told to have stood or come past it has yet to come to it.
         Some(said) => {
-            let yet_to_stop = told.origin == Origin::Behind && sv.slowed_from.is_some();
+            let on_its_way = told.origin == Origin::Behind || said.obeyed.is_none() && !sv.enters();
+            let yet_to_stop = on_its_way && sv.slowed_from.is_some();
             let at_sign = said.device == ControlDevice::StopSign && !yet_to_stop;
             sv.state == ContactState::SettingOff || sv.stood_first || at_sign
         }

@@ -238,14 +238,14 @@ fn pusher(told: &Told) -> (PartnerKind, Option<Size>, f64) {
     (kind, size, size.map_or(VehicleSpec::of(kind).length_m, |size| size.length_m))
 }
 
-/// The pace of a partner that drives behind an ego which stood on its way: it does what that does.
+/// The pace of a partner that drives behind an ego which stood on its way, or slows: it does what that does.
 fn as_the_ego(told: &Told, staging: &Staging) -> Option<Pace> {
     let (lead, pace) = ego_paces(told, &staging.ground, staging.sv_s_m);
-    let stood = lead.is_some() || pace.speed_mps == 0.0;
+    let changes = lead.is_some() || pace.speed_mps == 0.0 || told.sv.slowed_from.is_some();
     match lead {
         Some(lead) if lead.reverses() => None,
         Some(lead) => Some(lead.then(pace)),
-        None => stood.then_some(pace),
+        None => changes.then_some(pace),
     }
 }
 

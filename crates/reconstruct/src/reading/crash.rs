@@ -43,6 +43,7 @@ impl Told {
         let thing = kind.filter(|kind| kind.group() == KindGroup::Object);
         let mut sv = side(&account.sv, None, &mut assumed, "ego");
         let mut cp = side(partner, kind, &mut assumed, "partner");
+        cp.movement = origin::movement_over(told(&account.came_from), partner).or(cp.movement);
         acts::passes_where_touched(&mut cp.acts, &sv.zones);
         let passed = acts::passes_partner(&account.sv, partner, &account.others);
         if !passed {
@@ -100,6 +101,7 @@ impl Told {
             (ContactState::Reversing, ContactState::Stopped) => (false, backs_early),
             _ => (false, false),
         };
+        let movement = cp.movement.filter(|_| partner.movement.is_some());
         let mut this = Self {
             crash_type,
             place,
@@ -120,7 +122,7 @@ impl Told {
             origin_told,
             heading_told: partner.heading.is_some(),
             comes_round,
-            comes_over: origin::comes_over(origin, partner, told(&partner.movement)),
+            comes_over: origin::comes_over(origin, partner, movement),
             order,
             pushed: partner.did(Act::Pushed)
                 || crash_type == CrashType::Secondary
