@@ -21,8 +21,9 @@ pub(super) fn is_near(told: &[ContactZone], seen: ContactZone, outline: &Oriente
     zones_off(told, seen) <= 1 && !other_side
 }
 
-/// When somebody came to the place of the contact is looked for in such steps. [s]
-const LOOKS_S: f64 = 0.02;
+/// When somebody came to the place of the contact is looked for in such steps; who came by so much earlier was first. [s]
+const LOOKS_S: f64 = 0.01;
+const FIRST_S: f64 = 0.035;
 
 /// Who come within this time come together. [s]
 const TOGETHER_S: f64 = 1.0;
@@ -62,14 +63,14 @@ pub(super) fn order(
     let (ego_s, other_s) = (there_s(ego), there_s(other));
     let earlier_s = other_s - ego_s;
     let shown = match first {
-        FirstMover::Sv => earlier_s > 0.1,
-        FirstMover::Cp => earlier_s < -0.1,
+        FirstMover::Sv => earlier_s > FIRST_S,
+        FirstMover::Cp => earlier_s < -FIRST_S,
         FirstMover::Both => earlier_s.abs() <= TOGETHER_S,
     };
     let observed = match (ego_s < other_s, earlier_s.abs()) {
         (_, 0.0) => "both at once".to_owned(),
-        (true, by_s) => format!("the ego, by {by_s:.1} s"),
-        (false, by_s) => format!("the partner, by {by_s:.1} s"),
+        (true, by_s) => format!("the ego, by {by_s:.2} s"),
+        (false, by_s) => format!("the partner, by {by_s:.2} s"),
     };
     (shown, observed)
 }

@@ -4,8 +4,8 @@ use crate::reading::order::steps;
 use crate::told::side::{Side, is_on_foot};
 use crate::told::zones::side_of;
 use recrash_model::account::{
-    Account, Act, ActFact, ContactState, CrashType, Kind, LeftRight, Origin, Party, PlaceKind, RoadFeature, Source,
-    told,
+    Account, Act, ActFact, ContactState, CrashType, Kind, LaneWord, LeftRight, Origin, Party, PlaceKind, RoadFeature,
+    Source, told,
 };
 use recrash_model::template::Movement;
 use recrash_model::zones::ContactZone;
@@ -42,7 +42,7 @@ pub(super) fn comes_over(origin: Origin, partner: &Party, movement: Option<Movem
     origin == Origin::Opposite && told
 }
 
-/// How an oncoming partner moves that a column has on the wrong side, and words bring over there from its own.
+/// How an oncoming partner moves that a column has on the wrong side, and words bring over there from a lane of its own.
 pub(super) fn movement_over(origin: Option<Origin>, partner: &Party) -> Option<Movement> {
     let leaves = |fact: &ActFact| matches!(fact.act, Act::Drift | Act::Swerve | Act::LaneChange);
     let over = partner.acts.iter().any(|fact| leaves(fact) && !fact.after_contact && !fact.begun);
@@ -50,7 +50,8 @@ pub(super) fn movement_over(origin: Option<Origin>, partner: &Party) -> Option<M
         .movement
         .as_ref()
         .is_some_and(|fact| fact.value == Movement::WrongWay && !matches!(fact.source, Source::Words { .. }));
-    (origin == Some(Origin::Opposite) && by_column && over).then_some(Movement::CrossingIntoOpposingLane)
+    let own_lane = partner.lane.as_ref().is_some_and(|fact| fact.value != LaneWord::Opposing);
+    (origin == Some(Origin::Opposite) && by_column && over && own_lane).then_some(Movement::CrossingIntoOpposingLane)
 }
 
 /// Whether the partner is told to have backed into a space at the kerb, ahead of the ego or behind it.

@@ -3,7 +3,8 @@
 use crate::reading::words::span;
 use crate::told::crash::Told;
 use crate::told::side::Turning;
-use recrash_model::account::{Act, ActFact, Fact, LeftRight, Party, Source, StandReason, Standing, told};
+use recrash_model::account::{Act, ActFact, Fact, LeftRight, Origin, Party, Source, StandReason, Standing, told};
+use recrash_model::template::Movement;
 
 /// Whether somebody who does this leaves the line that it drives on, without a turn.
 pub(super) fn leaves_line(act: Act) -> bool {
@@ -101,11 +102,21 @@ impl Told {
     }
 }
 
+/// Whether the partner is told to have turned out of the crossing road against the ego's way, and to have driven straight along there since:
+/// "turned right onto Elm Street and passed the AV".
+pub(super) fn came_round_against(partner: &Party, origin: Option<Origin>) -> bool {
+    let Some(Origin::Cross { side }) = origin else { return false };
+    let straight = matches!(told(&partner.movement), Some(Movement::Straight | Movement::Passing));
+    let turn = turned_onto(partner).map(|(turn, _)| turn).filter(|turn| turn.side == Some(side.other()));
+    let leaves = |fact: &ActFact| leaves_line(fact.act) && !fact.after_contact;
+    straight && turn.is_some_and(|turn| !partner.acts.iter().any(|fact| fact.step > turn.step && leaves(fact)))
+}
+
 /// The last turn of somebody, and what tells that it drove along behind that.
 fn turned_onto(party: &Party) -> Option<(&ActFact, &ActFact)> {
     let before = || party.acts.iter().filter(|fact| !fact.after_contact && !fact.begun);
     let turn = before().filter(|fact| fact.act == Act::Turn).max_by_key(|fact| fact.step)?;
-    let since =
-        before().filter(|fact| fact.act == Act::Follow && fact.step > turn.step).min_by_key(|fact| fact.step)?;
+    let along = |fact: &&ActFact| matches!(fact.act, Act::Follow | Act::Pass) && fact.step > turn.step;
+    let since = before().filter(along).min_by_key(|fact| fact.step)?;
     Some((turn, since))
 }

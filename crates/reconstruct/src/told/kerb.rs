@@ -3,7 +3,8 @@
 use crate::told::crash::Told;
 use crate::told::phase::Phase;
 use crate::told::side::Turning;
-use recrash_model::account::{Act, ContactState, LaneWord, LeftRight, Origin, PlaceKind, StandReason};
+use crate::told::zones::side_of;
+use recrash_model::account::{Act, ContactState, LaneWord, LeftRight, Origin, PlaceKind, StandReason, Striker};
 use recrash_model::template::Movement;
 
 impl Told {
@@ -32,6 +33,14 @@ impl Told {
         let street = matches!(self.place, PlaceKind::Street | PlaceKind::Intersection | PlaceKind::Other);
         let parked = side.state == ContactState::Parked || side.came_to_park || side.state.stands() && told.at_kerb;
         street && parked && !self.is_in_lane(of_ego) && (of_ego || self.thing.is_none())
+    }
+
+    /// Whether the partner is parked beside the road with the side towards the ego that is touched only where it faces the other way.
+    pub(crate) fn is_parked_against(&self) -> bool {
+        let Origin::Parked { side: Some(side) } = self.origin else { return false };
+        let away = if side == LeftRight::Left { 1.0 } else { -1.0 };
+        let stands = self.cp.state == ContactState::Parked && self.thing.is_none() && !self.diagonal;
+        stands && self.door == Some(Striker::Cp) && side_of(&self.cp.zones) == Some(away)
     }
 
     /// Whether the partner parks, forwards, behind an ego that stands at the kerb.

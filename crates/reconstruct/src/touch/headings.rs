@@ -166,7 +166,10 @@ pub(super) fn headings(told: &Told, sv_heading: f64, behind: f64) -> Vec<(f64, f
             }
         }
         // It has come round the ego, and is beside it.
-        Origin::Parked { .. } if told.cp.state == ContactState::Parked => list.push((0.0, 0.0)),
+        Origin::Parked { .. } if told.cp.state == ContactState::Parked => {
+            let faces = if told.is_parked_against() { math::PI } else { 0.0 };
+            list.push((faces, faces));
+        }
         Origin::Parked { .. } if told.comes_round => list.extend(aside.iter().map(|off| (0.0, degrees(*off)))),
         Origin::Stall { side } | Origin::Driveway { side } | Origin::Sidewalk { side } | Origin::Parked { side } => {
             for from in unknown(side) {
