@@ -110,13 +110,14 @@ const LEAST_OUT_M: f64 = 1.2;
 /// other's flank.
 fn comes_to_flank(told: &Told, aside: Aside, (share, over_m): (f64, f64)) -> bool {
     let ((length_m, width_m), (_, other_m)) = (size_of(&told.sv), size_of(&told.cp));
-    let by_m = (aside.to_t_m - aside.from_t_m).abs();
+    let first_m = told.first_part_m(aside).unwrap_or(0.0).abs();
+    let by_m = (aside.to_t_m - aside.from_t_m).abs() - first_m;
     let arm_m = recrash_roads::arm_m(told.sv.kind, length_m);
     let left = 1.0 - share;
     let done_m = by_m * share * share * share * (10.0 - 15.0 * share + 6.0 * share * share);
     let slope = by_m / over_m * 30.0 * share * share * left * left;
     let middle_m = done_m + slope * arm_m;
-    middle_m >= LEAST_OUT_M && middle_m + 0.5 * (slope * length_m + width_m + other_m) >= LANE_M
+    middle_m >= LEAST_OUT_M && first_m + middle_m + 0.5 * (slope * length_m + width_m + other_m) >= LANE_M
 }
 
 /// The share of its move that such an ego has done as they touch.
@@ -132,6 +133,9 @@ fn over_from_stand(told: &Told, aside: Aside, driven_m: f64) -> f64 {
     let found = ways.find(|way| told.keeps_lane_beside(aside) && comes_to_flank(told, aside, *way));
     found.map_or(2.0 * driven_m, |(_, over_m)| over_m)
 }
+
+/// Who leaves its line in two goes does the first part of that on so much of its way. [m]
+const FIRST_PART_OVER_M: f64 = 12.0;
 
 /// Who parks at the kerb comes along its lane, and leaves it on so much of its way; it is at the kerb so far before it stands. [m]
 const PULLS_OVER_M: f64 = 20.0;
@@ -181,6 +185,10 @@ pub(crate) fn ego_plan(told: &Told, ground: &Ground, sv_s_m: f64, sv: Pose) -> A
         let by_m = (aside.to_t_m - aside.from_t_m).abs();
         let least_m = if ground.drift.is_some() { DRIFTS_BY * by_m } else { 0.0 };
         let shift = shift(told, aside, &pace, least_m);
+        let first = told.first_part_m(aside).filter(|_| ground.drift.is_none());
+        if let Some((lead, first_m)) = lead.as_mut().filter(|lead| !lead.reverses()).zip(first) {
+            lead.goes_aside(aside.from_t_m + first_m, FIRST_PART_OVER_M);
+        }
         // It leaves its line before it stops for good.
         let at = match told.sv.state.stands() {
             true => 0,
@@ -191,7 +199,7 @@ pub(crate) fn ego_plan(told: &Told, ground: &Ground, sv_s_m: f64, sv: Pose) -> A
             }
         };
         match lead.as_mut().filter(|_| told.sv.state.stands()) {
-            Some(lead) => lead.shifts(aside.to_t_m),
+            Some(lead) => lead.shifts(aside.to_t_m, told.sv.ways_since_aside()),
             None => pace.acts.insert(at, shift),
         }
     }

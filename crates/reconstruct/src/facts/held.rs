@@ -241,7 +241,7 @@ pub(crate) fn facts(told: &Told, scenario: &Scenario, rollout: &Rollout) -> Vec<
             let of_partner = kind == CheckKind::CpControl;
             let arm = signals::own_arm(told, scenario).filter(|_| of_partner);
             let seen = signals::check(said, arm, scenario, track, touch.time_s);
-            let seen = if of_partner && signals::is_beside_road(told) { signals::where_drawn(seen) } else { seen };
+            let seen = if of_partner && signals::is_beside_road(told) { signals::beside_road(seen) } else { seen };
             held(kind, signals::words(said), seen);
         }
     }

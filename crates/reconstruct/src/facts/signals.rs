@@ -63,8 +63,8 @@ pub(super) fn is_beside_road(told: &Told) -> bool {
     arm_of(told.origin).is_empty() || told.cp.movement == Some(Movement::NmCrossing)
 }
 
-/// What is seen of a signal or a sign of such a one: that there is none on its way is no fault of the way.
-pub(super) fn where_drawn((result, observed): (CheckResult, String)) -> (CheckResult, String) {
+/// What is seen of a signal or a sign of such a one: a line that no scene has cannot be shown.
+pub(super) fn beside_road((result, observed): (CheckResult, String)) -> (CheckResult, String) {
     if observed == NONE { (CheckResult::CannotBeShown, observed) } else { (result, observed) }
 }
 

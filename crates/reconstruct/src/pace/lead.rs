@@ -55,14 +55,37 @@ impl Lead {
         self.acts.iter().rfind(goes).map(|act| first_time(std::slice::from_ref(act)))
     }
 
-    /// It leaves its line on its last way, of which half is done where that ends.
-    pub(crate) fn shifts(&mut self, to_t_m: f64) {
-        let Some((way_m, _)) = self.stretches.last().copied() else { return };
-        let starts = |act: &scenario::Act| matches!(act.deed, Deed::Speed { to_mps, .. } if to_mps > 0.0);
-        let at = self.acts.iter().rposition(starts).unwrap_or(0);
-        let over_m = 2.0 * way_m;
+    /// It leaves its line on its last way, or on so many before that too, of which half is done where that ends.
+    pub(crate) fn shifts(&mut self, to_t_m: f64, before: usize) {
+        let ways = self.stretches.iter().rev().take(before + 1).map(|(way_m, _)| way_m);
+        let over_m = 2.0 * ways.sum::<f64>();
+        if over_m == 0.0 {
+            return;
+        }
+        let starts =
+            |(_, act): &(usize, &scenario::Act)| matches!(act.deed, Deed::Speed { to_mps, .. } if to_mps > 0.0);
+        let at = self.acts.iter().enumerate().filter(starts).rev().nth(before).map_or(0, |(at, _)| at);
         let shift = scenario::Act { deed: Deed::Shift { to_t_m, over_m }, ..self.acts[at].clone() };
         self.acts.insert(at, shift);
+    }
+
+    /// It leaves its line by a first part on its last way, and is there where that ends; on no more than so much of it. [m]
+    pub(crate) fn goes_aside(&mut self, to_t_m: f64, most_m: f64) {
+        let Some((way_m, _)) = self.stretches.last().copied() else { return };
+        let over_m = way_m.min(most_m);
+        let starts = |act: &scenario::Act| matches!(act.deed, Deed::Speed { to_mps, .. } if to_mps > 0.0);
+        let goes = self.acts.iter().rposition(starts);
+        let (at, begins_s) = match (goes, self.acts.first().map(|act| &act.deed)) {
+            (Some(at), _) => (at, first_time(&self.acts[at..])),
+            // It comes along, and brakes.
+            (None, Some(Deed::Stop { rate_mps2, .. })) => {
+                let braking_m = 0.5 * self.speed_mps * self.speed_mps / rate_mps2;
+                let rolling_s = (over_m - braking_m).max(0.0) / self.speed_mps.max(0.1);
+                (0, ((first_time(&self.acts) - rolling_s) * 10.0).floor().max(0.0) / 10.0)
+            }
+            _ => return,
+        };
+        self.acts.insert(at, when(begins_s, Deed::Shift { to_t_m, over_m }));
     }
 
     /// Forward all the way, and then the last pace.

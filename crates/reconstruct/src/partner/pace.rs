@@ -77,10 +77,12 @@ fn partner_pace(told: &Told, staging: &Staging, (ego, ego_m, before_s): (&Pace, 
     }
     // Who waited behind an ego that has come into the junction since stood behind where that did.
     let moved_up = told.sv.phases == [Phase::Stands, Phase::Drives, Phase::Stands] && told.sv.enters();
-    if told.waits_behind() && moved_up && cp.state != ContactState::Reversing {
-        if let Some(pace) = start_over(contact_s, cp.speed_mps, ego_m + BEHIND_M) {
-            return pace;
-        }
+    if told.waits_behind()
+        && moved_up
+        && cp.state != ContactState::Reversing
+        && let Some(pace) = start_over(contact_s, cp.speed_mps, ego_m + BEHIND_M)
+    {
+        return pace;
     }
     let same_way = matches!(told.origin, Origin::Behind | Origin::Ahead);
     let follows = matches!(told.origin, Origin::Behind | Origin::Beside { .. });

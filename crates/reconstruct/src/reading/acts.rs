@@ -78,9 +78,8 @@ pub(super) fn told(party: &Party, state: ContactState) -> Vec<Doing> {
 
 /// Whether somebody is told to have turned to the other side after this turn: that was the road on which it came, and which it left.
 fn turns_again(turn: &ActFact, acts: &[&ActFact]) -> bool {
-    let other = turn.side.map(LeftRight::other);
-    let again = |later: &&&ActFact| later.act == Act::Turn && later.step > turn.step && later.side == other;
-    other.is_some() && acts.iter().any(|later| again(&later))
+    let later = acts.iter().filter(|fact| fact.act == Act::Turn && fact.step > turn.step);
+    turn.side.is_some_and(|side| later.into_iter().any(|later| later.side == Some(side.other())))
 }
 
 /// Whether somebody who stands or backs was turning round in several goes: that is one of them, and no whole turn.

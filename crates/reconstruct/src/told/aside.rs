@@ -18,6 +18,9 @@ const CHANGES_M: f64 = 2.2;
 /// An ego that leaves the kerb, and touches one that is parked there, leaves it by so much. [m]
 const LEAVES_KERB_M: f64 = 1.2;
 
+/// Who leaves its line in two goes has done so much of that at the end of the first. [-]
+const FIRST_PART: f64 = 0.3;
+
 /// Who pulls out has left the kerb by so much. [m]
 const PULLS_OUT_M: f64 = 1.5;
 
@@ -83,6 +86,12 @@ impl Told {
             done: (self.lane_changed || changed || self.sv.goes_round) && stopped.is_none(),
             back,
         })
+    }
+
+    /// How far to the right the ego goes before its last stand that leaves its line in two goes, with a stand between. [m]
+    pub(crate) fn first_part_m(&self, aside: Aside) -> Option<f64> {
+        let twice = self.sv.goes_aside_twice() && !self.sv.state.stands() && !aside.done && !aside.back;
+        twice.then_some(FIRST_PART * (aside.to_t_m - aside.from_t_m))
     }
 
     /// How far to the left of where it touches the partner came along, of who goes about the ego's way or against it. [m]

@@ -38,6 +38,11 @@ impl Doing {
         matches!(least(self.act), Some(Least::Aside(_) | Least::Turn(_) | Least::Any | Least::By))
     }
 
+    /// Whether it changes lanes, drifts or swerves.
+    pub(super) const fn leaves_line(&self) -> bool {
+        matches!(self.act, Act::LaneChange | Act::Drift | Act::Swerve)
+    }
+
     /// Whether it is that it swerved.
     pub(crate) const fn is_swerve(&self) -> bool {
         matches!(self.act, Act::Swerve)

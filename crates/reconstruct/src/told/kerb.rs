@@ -35,7 +35,7 @@ impl Told {
         street && parked && !self.is_in_lane(of_ego) && (of_ego || self.thing.is_none())
     }
 
-    /// Whether the partner is parked beside the road with the side towards the ego that is touched only where it faces the other way.
+    /// Whether a parked partner's door touches that is on the ego's side only where the partner faces the other way.
     pub(crate) fn is_parked_against(&self) -> bool {
         let Origin::Parked { side: Some(side) } = self.origin else { return false };
         let away = if side == LeftRight::Left { 1.0 } else { -1.0 };

@@ -124,6 +124,22 @@ impl Side {
         self.acts.iter().any(Doing::is_entry)
     }
 
+    /// Whether it left its line before its last stop and again behind it, and not to the other side.
+    pub(super) fn goes_aside_twice(&self) -> bool {
+        let Some(stop) = self.acts.iter().rposition(Doing::comes_to_stand) else { return false };
+        let first = self.acts[..stop].iter().rfind(|doing| doing.leaves_line());
+        let second = self.acts[stop..].iter().find(|doing| doing.leaves_line());
+        let sides = first.zip(second).map(|(first, second)| first.side.zip(second.side));
+        sides.is_some_and(|sides| sides.is_none_or(|(first, second)| first == second))
+    }
+
+    /// How often it is told to have set off from a stop since it left its line.
+    pub(crate) fn ways_since_aside(&self) -> usize {
+        let aside = self.acts.iter().rposition(|doing| doing.leaves_line()).unwrap_or(self.acts.len());
+        let stops = self.acts.iter().skip(aside).filter(|doing| doing.comes_to_stand()).count();
+        stops.saturating_sub(1)
+    }
+
     /// To which side it passed last, or was about to.
     pub(crate) fn passes_on(&self) -> Option<LeftRight> {
         self.acts.iter().rev().find_map(Doing::passes_on)

@@ -35,7 +35,7 @@ const PASSED: &str = "The AV was stopped at a red light on Elm Street. A van tha
                       of the van made contact with the left side of the AV.";
 
 /// What of an account's acts a scene without some of its facts is said to show.
-fn acts_without(account: &Account, kind: CheckKind, without: impl Fn(&mut Account)) -> (CheckResult, String) {
+pub fn acts_without(account: &Account, kind: CheckKind, without: impl Fn(&mut Account)) -> (CheckResult, String) {
     let mut checks = checks_without(account, without).into_iter();
     let check = checks.find(|check| check.kind == kind).expect("told");
     (check.result, check.observed)
