@@ -270,7 +270,8 @@ impl Chunker<'_> {
             return (Some(Chunk::Comma), length);
         }
         if let Some((lane, length)) = self.lane(at) {
-            return (Some(Chunk::Lane(lane)), length);
+            let chunk = if self.is_partly_there(at) { Chunk::Word } else { Chunk::Lane(lane) };
+            return (Some(chunk), length);
         }
         if let Some(length) = self.run_in_words(at) {
             return (Some(Chunk::Not), length);
@@ -350,6 +351,8 @@ impl Chunker<'_> {
             "got" | "gets" if matches!(self.verb(at + 1, &[]), Some((_, Form::Past, _))) => Chunk::Be,
             "is" | "are" | "was" | "were" | "be" | "been" | "being" => Chunk::Be,
             "no" | "nothing" | "nobody" if at == self.first => Chunk::Not,
+            // "shows that no part of it came into contact".
+            "no" if (self.text(at - 1), self.text(at + 1)) == ("that", "part") => Chunk::Not,
             "not" | "never" | "didn" | "wasn" | "couldn" | "without" | "unable" | "nor" | "neither" | "avoid"
             | "avoiding" | "avoided" => Chunk::Not,
             "fail" | "failed" | "failing" | "fails" | "refused" => Chunk::Not,

@@ -171,10 +171,16 @@ impl Chunker<'_> {
         if at >= self.tokens.len() || at > draft.first + LONGEST_LEAD || self.tokens[at].kind == TokenKind::Mark {
             return Lead::Ends;
         }
-        if let Some((meaning, length)) = self.head(at) {
+        let determined = draft.noun.article != Article::None;
+        let head = self.head(at);
+        let carried = head.as_ref().map_or(1, |(_, length)| *length);
+        if let Some(behind) = self.is_carried(at + carried).filter(|_| determined) {
+            draft.at = behind;
+            return Lead::On;
+        }
+        if let Some((meaning, length)) = head {
             return Lead::Head(meaning, length);
         }
-        let determined = draft.noun.article != Article::None;
         // "the slowly moving van".
         let intensifies = self.text(at).ends_with("ly") && determined && self.adjective(at + 1);
         if self.joins_adjectives(at, &draft.noun) || intensifies {
@@ -292,6 +298,13 @@ impl Chunker<'_> {
             Some((Meaning::Kind(kind), _)) => kind.is_vehicle(),
             _ => false,
         }
+    }
+
+    /// "a gravel-hauling truck" is a truck: the token behind the participle, where a vehicle is named there.
+    fn is_carried(&self, behind: usize) -> Option<usize> {
+        let carries = matches!(self.text(behind), "hauling" | "carrying" | "towing" | "collecting" | "delivering");
+        let trailer = self.text(behind + 1) == "trailer";
+        (carries && !trailer && self.vehicle(behind + 1)).then_some(behind + 1)
     }
 
     /// "a truck-mounted sign" names no truck. "A truck mounted the curb" does.
@@ -530,6 +543,15 @@ impl Chunker<'_> {
         }
         noun.subject = (subject || self.text(first) == "our") && noun.occupant.is_none();
         noun.several |= plural;
+        // "The traffic was backed up": all that drives there, whoever reports it.
+        if plural
+            && at > first
+            && self.text(at - 1) == "traffic"
+            && noun.adjectives.is_empty()
+            && noun.compass.is_none()
+        {
+            noun.article = Article::None;
+        }
         let alone = (first..at).any(|at| {
             matches!(self.text(at), "abandoned" | "parked" | "unattended" | "riderless" | "fallen" | "unoccupied")
         });

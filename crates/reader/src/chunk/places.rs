@@ -7,6 +7,9 @@ use recrash_model::account::{Compass, LaneWord};
 /// Most tokens of the name of a lane before "lane".
 const LONGEST_LANE_NAME: usize = 7;
 
+/// "partially in one lane and partially in another one": both stand so near. [tokens]
+const BOTH_WITHIN: usize = 12;
+
 const LEFT: &[&str] = &["left", "leftmost", "inside", "fast"];
 const RIGHT: &[&str] = &["right", "rightmost", "outside", "slow"];
 const BUS: &[&str] = &["bus", "transit"];
@@ -159,8 +162,8 @@ impl Chunker<'_> {
         if word == "shoulder" {
             return Some((LaneWord::Shoulder, 1));
         }
-        if let Some(length) = self.counted_lane(at) {
-            return Some((LaneWord::Center, length));
+        if let Some(counted) = self.counted_lane(at).or_else(|| self.counted_turn_lane(at)) {
+            return Some(counted);
         }
         if let Some(numbered) = self.numbered_lane(at).or_else(|| self.ordinal_lane(at)) {
             return Some(numbered);
@@ -188,13 +191,29 @@ impl Chunker<'_> {
         Some((*lane, end + 1 - at))
     }
 
+    /// "partially in the left lane and partially in the parking lane": in neither alone, of a lane and a strip.
+    pub(super) fn is_partly_there(&self, at: usize) -> bool {
+        let partly = |at: usize| matches!(self.text(at), "partially" | "partly" | "partway");
+        let in_name = |at: &usize| in_lane_names(self.text(*at)) || matches!(self.text(*at), "the" | "a" | "its");
+        let from = (self.first..at).rev().take(LONGEST_LANE_NAME).take_while(in_name).last().unwrap_or(at);
+        let inside = from >= self.first + 2 && matches!(self.text(from - 1), "in" | "within" | "on" | "inside");
+        if !inside || !partly(from - 2) {
+            return false;
+        }
+        let mut near = from.saturating_sub(2 + BOTH_WITHIN).max(self.first)..(at + BOTH_WITHIN).min(self.tokens.len());
+        let strip = |at: usize| {
+            matches!(self.text(at), "parking" | "bike" | "bicycle" | "curb" | "shoulder") && self.text(at + 1) == "lane"
+        };
+        near.clone().any(strip) && near.any(|at| at != from - 2 && partly(at))
+    }
+
     /// "the second lane from the right", "the second from the right lane": neither the first nor the last.
-    fn counted_lane(&self, at: usize) -> Option<usize> {
-        if !matches!(self.text(at), "second" | "third" | "2nd" | "3rd" | "number") {
+    fn counted_lane(&self, at: usize) -> Option<(LaneWord, usize)> {
+        if !matches!(self.text(at), "second" | "third" | "fourth" | "2nd" | "3rd" | "4th" | "number") {
             return None;
         }
         let words: Vec<&str> = (at + 1..at + 6).map(|at| self.text(at)).collect();
-        Some(match words.as_slice() {
+        let length = match words.as_slice() {
             ["lane", "from", "the", "left" | "right" | "leftmost" | "rightmost", ..]
             | ["from", "the", "left" | "right" | "leftmost" | "rightmost", "lane", ..]
             | ["to", "the", "left" | "right", "lane", ..] => 5,
@@ -203,7 +222,19 @@ impl Chunker<'_> {
             | ["to", "left" | "right", "lane", ..] => 4,
             ["leftmost" | "rightmost", "lane", ..] => 3,
             _ => return None,
-        })
+        };
+        Some((LaneWord::Center, length))
+    }
+
+    /// "the second from the right designated right turn lane": a lane for turns all the same.
+    fn counted_turn_lane(&self, at: usize) -> Option<(LaneWord, usize)> {
+        let counts = matches!(self.text(at), "second" | "third" | "2nd" | "3rd") && self.text(at + 1) == "from";
+        let side = at + 2 + usize::from(self.text(at + 2) == "the");
+        if !counts || !matches!(self.text(side), "left" | "right" | "leftmost" | "rightmost") {
+            return None;
+        }
+        let (lane, length) = self.lane(side + 1)?;
+        matches!(lane, LaneWord::LeftTurn | LaneWord::RightTurn).then_some((lane, side + 1 + length - at))
     }
 
     /// "the number 2 lane (of 3)", "the #1 lane": lanes are counted from the left.

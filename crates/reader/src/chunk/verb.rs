@@ -234,7 +234,8 @@ impl Candidate<'_> {
     /// "at slow speeds".
     fn is_a_speed(&self) -> bool {
         let how = matches!(self.word_before, "slow" | "low" | "high" | "reduced" | "moderate" | "excessive" | "slower");
-        self.word(0) == "speeds" && (how || self.word_before == "at")
+        let adjusts = self.at >= 2 && matches!(self.chunker.text(self.at - 2), "to" | "at" | "of" | "with");
+        self.word(0) == "speeds" && (how || adjusts || matches!(self.word_before, "at" | "to" | "of"))
     }
 
     /// "moved left without signaling".

@@ -31,7 +31,9 @@ fn comes_behind(reading: &Reading<'_>, first: usize, second: usize) -> bool {
     let unclear = |frame: &Frame| frame.aside || frame.described || frame.looks_back;
     // What is told of before the crash behind its headline is no sequel of that.
     let back = |frame: &Frame| reading.back.contains(&frame.sentence);
-    if unclear(one) || unclear(two) || had(reading, two) || back(one) != back(two) {
+    // "both vehicles set off": at once.
+    let at_once = one.first == two.first;
+    if unclear(one) || unclear(two) || had(reading, two) || back(one) != back(two) || at_once {
         return false;
     }
     // "The AV had pulled over. A van began to back up": over by then. "The AV was stopped. A van pulled out": it stood by then.

@@ -2,7 +2,8 @@
 
 use super::Reading;
 use super::across::{begins, is_behind_begin};
-use super::sides::{back_to_the_middle, lane_entered, side_of};
+use super::lanes::{comes_onto_a_lane, enters_a_lane, is_about_to_merge, waits_to_change};
+use super::sides::{back_to_the_middle, side_of};
 use super::speeds::is_of_last_contact;
 use super::{entry, flashback, nominal};
 use crate::chunk::{Joint, Spot};
@@ -29,6 +30,10 @@ pub(super) fn acts(reading: &Reading<'_>, actor: Actor) -> Vec<ActFact> {
         if is_not_completed(reading, frame) {
             all.iter_mut().filter(|fact| Some(fact.act) == frame.act() && !fact.after_contact).for_each(leave_off);
         }
+        if leaves_the_junction(reading, number, frame) {
+            let turn = all.iter_mut().rfind(|fact| fact.act == Act::Turn && !fact.after_contact);
+            turn.into_iter().for_each(|turn| (turn.begun, turn.done) = (false, true));
+        }
         let Some(act) = act_of(reading, number, frame, pushed) else { continue };
         let last = at_crash.filter(|_| flashback::is_state_at_crash(reading, number) && actor == SUBJECT);
         if last.is_some() && all.iter().rfind(|fact| !fact.after_contact).is_some_and(stands) {
@@ -45,7 +50,8 @@ pub(super) fn acts(reading: &Reading<'_>, actor: Actor) -> Vec<ActFact> {
             step: last.unwrap_or(number) as u32,
             after_contact,
             begun: frame.progress == Progress::Tried && !went_by(reading, number, frame)
-                || begins_to_pass(reading, actor, frame, act, side),
+                || begins_to_pass(reading, actor, frame, act, side)
+                || act == Act::UTurn && is_under_way(reading, frame),
             done: is_done(reading, frame),
             after_other: None,
             manner: manner(reading, number),
@@ -73,7 +79,11 @@ pub(super) fn acts(reading: &Reading<'_>, actor: Actor) -> Vec<ActFact> {
             }
             _ if in_passing => {}
             // "stopped after making a left turn": it turned first.
-            Some(last) if stands(last) && is_behind_after(reading, frame, last.step as usize) => {
+            Some(last)
+                if stands(last)
+                    && (is_behind_after(reading, frame, last.step as usize)
+                        || enters_as_it_stops(reading, &fact, frame, last)) =>
+            {
                 let step = std::mem::replace(&mut last.step, fact.step);
                 all.insert(all.len() - 1, ActFact { step, ..fact });
             }
@@ -110,6 +120,19 @@ fn is_not_completed(reading: &Reading<'_>, frame: &Frame) -> bool {
     frame.negated && sided_course(frame.act()) && ["complet", "finish"].iter().any(|stem| word.starts_with(stem))
 }
 
+/// "as it exited the intersection", "approached the exit of the intersection": a turn that it made there is done by then.
+fn leaves_the_junction(reading: &Reading<'_>, number: usize, frame: &Frame) -> bool {
+    let (first, end) = reading.window(number);
+    let words: Vec<&str> =
+        reading.story.tokens[first..end.min(first + JUNCTION_WITHIN)].iter().map(|token| token.text.as_str()).collect();
+    let exits = words[0].starts_with("exit") || words[0].starts_with("approach") && words.contains(&"exit");
+    let turns = frame.who == Some(SUBJECT) || reading.did(SUBJECT, Act::Turn);
+    exits && turns && words.contains(&"intersection") && frame.happened() && !reading.is_after(number)
+}
+
+/// The intersection stands so near behind the verb of leaving it. [tokens]
+const JUNCTION_WITHIN: usize = 6;
+
 /// Acts that take a way of which some may be left.
 fn sided_course(act: Option<Act>) -> bool {
     matches!(act, Some(Act::LaneChange | Act::Turn | Act::UTurn | Act::Pass | Act::Park))
@@ -131,6 +154,14 @@ fn enters(all: &mut Vec<ActFact>, fact: &ActFact) {
         Some(_) => {}
         None => all.push(fact.clone()),
     }
+}
+
+/// "was attempting a multi-point turn", "in the process of turning around": not done yet.
+fn is_under_way(reading: &Reading<'_>, frame: &Frame) -> bool {
+    let tokens = &reading.story.tokens;
+    let before = &tokens[frame.first.saturating_sub(3)..frame.first];
+    let process = before.windows(2).any(|pair| pair[0].text == "process" && pair[1].text == "of");
+    process || tokens[frame.first].text.starts_with("attempt")
 }
 
 /// An act before the contact of which nothing more is told than that it was.
@@ -232,7 +263,8 @@ fn is_done(reading: &Reading<'_>, frame: &Frame) -> bool {
         _ => false,
     };
     let turned = had && passed && frame.progress == Progress::Real;
-    frame.joint == Some(Joint::After)
+    // "After the light changed and it began its turn": begun.
+    frame.joint == Some(Joint::After) && !begins(reading, frame)
         || turned
         || ["complet", "finish", "exit"].iter().any(|start| first.starts_with(start))
 }
@@ -280,6 +312,17 @@ fn is_behind_after(reading: &Reading<'_>, frame: &Frame, before: usize) -> bool 
     behind && main.sentence == frame.sentence && main.joint != Some(Joint::After)
 }
 
+/// "slowed to a stop while entering the intersection": it came in, and stopped there.
+fn enters_as_it_stops(reading: &Reading<'_>, fact: &ActFact, frame: &Frame, last: &ActFact) -> bool {
+    let stop = &reading.story.frames[last.step as usize];
+    let inner = frame.joint == Some(Joint::While) && stop.joint != Some(Joint::While) && frame.form == Form::Ing;
+    fact.act == Act::Enter
+        && last.act == Act::Stop
+        && inner
+        && stop.sentence == frame.sentence
+        && frame.clause > stop.clause
+}
+
 /// The act of a frame, as it counts in the account.
 fn act_of(reading: &Reading<'_>, number: usize, frame: &Frame, pushed: bool) -> Option<Act> {
     if pushed {
@@ -303,7 +346,13 @@ fn act_of(reading: &Reading<'_>, number: usize, frame: &Frame, pushed: bool) -> 
         return Some(Act::Slow);
     }
     let act = frame.act()?;
-    if act == Act::LaneChange && is_about_to_merge(reading, number, frame) {
+    if act == Act::Follow && is_told_again(reading, number, frame) {
+        return None;
+    }
+    if act == Act::LaneChange && is_about_to_merge(reading, number, frame) || waits_to_change(reading, number, frame) {
+        return None;
+    }
+    if act == Act::LaneChange && comes_onto_a_lane(reading, number, frame) {
         return None;
     }
     // "Its front wheel came off": it did not fall itself.
@@ -332,9 +381,14 @@ fn act_of(reading: &Reading<'_>, number: usize, frame: &Frame, pushed: bool) -> 
         Act::Follow if goes_on_from_a_stand(reading, number, frame, &words) => Act::SetOff,
         Act::Follow if sets_off_at_green(reading, number, frame) => Act::SetOff,
         Act::Follow if sets_off_with_subject(reading, frame, &words) => Act::SetOff,
+        Act::Follow if moved().is_none() && goes_at_green(reading, frame, &words) => Act::SetOff,
         // Who came along and was "beginning to enter" did not stand.
         Act::SetOff if words.chars().take(24).collect::<String>().contains("enter") && moved() == Some(Act::Follow) => {
-            Act::Enter
+            if enters_a_lane(reading, number, frame) {
+                Act::LaneChange
+            } else {
+                Act::Enter
+            }
         }
         // "It drove up on green and began to proceed through the junction": so it went on.
         Act::SetOff if begins_to_go_on(reading, number, frame) => Act::Follow,
@@ -344,6 +398,23 @@ fn act_of(reading: &Reading<'_>, number: usize, frame: &Frame, pushed: bool) -> 
         Act::Pass if passes_nobody(reading, frame) => Act::Follow,
         act => act,
     })
+}
+
+/// "It proceeded a little and stopped. While it was proceeding, a van behind it did so too": what it did before it stopped.
+fn is_told_again(reading: &Reading<'_>, number: usize, frame: &Frame) -> bool {
+    let Some(who) = frame.who else { return false };
+    let tokens = &reading.story.tokens;
+    let was = frame.first > 0 && tokens[frame.first - 1].text == "was";
+    let stem = |frame: &Frame| tokens[frame.first].text.get(..5).map(str::to_owned);
+    let before: Vec<&Frame> = reading
+        .before(who)
+        .take_while(|(other, _)| *other < number)
+        .map(|(_, frame)| frame)
+        .filter(|frame| frame.happened())
+        .collect();
+    let same = before.iter().rposition(|before| stem(before) == stem(frame) && before.sentence < frame.sentence);
+    let stopped = same.is_some_and(|same| before[same..].iter().any(|frame| frame.act() == Some(Act::Stop)));
+    was && stopped && frame.joint == Some(Joint::While) && frame.form == Form::Ing
 }
 
 /// "attempted to avoid a collision": who stood could not brake.
@@ -372,28 +443,6 @@ fn went_by(reading: &Reading<'_>, number: usize, frame: &Frame) -> bool {
     };
     reading.before(SUBJECT).any(returns)
 }
-
-/// "While attempting a merge onto Elm Street, it stopped to give way": from one road onto another, which is no change of lanes, and was still
-/// to come.
-fn is_about_to_merge(reading: &Reading<'_>, number: usize, frame: &Frame) -> bool {
-    let Some(who) = frame.who else { return false };
-    let tokens = &reading.story.tokens;
-    let end = reading.story.sentences[frame.sentence].end.min(frame.first + MERGE_WITHIN);
-    let clause: Vec<&str> =
-        tokens[frame.first..end].iter().map(|token| token.text.as_str()).take_while(|word| *word != ",").collect();
-    let merge = clause.iter().position(|word| word.starts_with("merg"));
-    let Some(behind) = merge.map(|merge| &clause[merge + 1..]) else { return false };
-    let road = matches!(behind.first(), Some(&("onto" | "into")))
-        && !behind.iter().any(|word| matches!(*word, "lane" | "lanes" | "traffic" | "gap" | "space" | "path" | "'s"));
-    let waits = |frame: &Frame| {
-        let stops = matches!(frame.act(), Some(Act::Stop | Act::Hold)) || frame.sense == Sense::Yield;
-        stops && frame.happened()
-    };
-    road && reading.before(who).any(|(later, frame)| later > number && waits(frame))
-}
-
-/// A merge and the road onto which it leads stand within so many words. [tokens]
-const MERGE_WITHIN: usize = 12;
 
 /// "It was turning, and began to accelerate", "shifted into reverse and began to accelerate": who moved gained speed, and did not set off.
 pub(super) fn gains_speed(reading: &Reading<'_>, number: usize, frame: &Frame) -> bool {
@@ -432,36 +481,16 @@ fn yields_in_motion(reading: &Reading<'_>, number: usize, frame: &Frame) -> bool
     let same = |other: &&Frame| other.sentence == frame.sentence && other.who == frame.who && other.happened();
     let told = reading.story.frames.iter().filter(same).any(|other| slows(other.act()));
     let last = last_act(reading, number, frame, |_| true);
+    // "traveling at a low speed, yielding to a queue": it was slow already.
+    let slow = frame.who.is_some_and(|who| {
+        let before = reading.before(who).take_while(|(other, _)| *other < number).last();
+        before.is_some_and(|(last, before)| {
+            before.sentence == frame.sentence && frame.form == Form::Ing && manner(reading, last) == Some(Manner::Slow)
+        })
+    });
     // "reversed without yielding".
     let drives = last.is_some() && !slows(last) && last != Some(Act::Reverse);
-    to.is_some() && !told && drives && !reading.is_after(number)
-}
-
-/// "entered the left turn lane", of who drove along before: it changed lanes. Out of a place beside the road, or from a crossing one,
-/// it comes into a lane by that.
-fn enters_a_lane(reading: &Reading<'_>, number: usize, frame: &Frame) -> bool {
-    let Some(who) = frame.who else { return false };
-    let Some((first, lane)) = lane_entered(reading, frame) else { return false };
-    let words = &reading.story.tokens[first..lane];
-    let oncoming = |token: &Token| matches!(token.text.as_str(), "oncoming" | "opposing" | "opposite" | "slip");
-    let wheels = reading.story.world.actors[who].kind.is_none_or(Kind::is_vehicle);
-    let came = |(_, before): (usize, &Frame)| {
-        matches!(before.act(), Some(Act::Follow | Act::Slow | Act::Accelerate)) && before.happened()
-    };
-    let elsewhere = |(_, before): (usize, &Frame)| {
-        let act = before.act();
-        before.out_of.is_some()
-            || matches!(
-                act,
-                Some(Act::PullOut | Act::Cross | Act::Turn | Act::UTurn | Act::Reverse | Act::Hold | Act::Pass)
-            )
-    };
-    let before = || reading.before(who).take_while(|(other, _)| *other < number);
-    // "entered the right turn lane and turned right": on its way to the turn.
-    let turns = reading.before(who).any(|(other, later)| other > number && later.act() == Some(Act::Turn));
-    let placed = !reading.story.world.actors[who].relations.is_empty();
-    let drove = before().any(came) || placed && who != SUBJECT;
-    wheels && !turns && !words.iter().any(oncoming) && drove && frame.out_of.is_none() && !before().any(elsewhere)
+    to.is_some() && !told && drives && !slow && !reading.is_after(number)
 }
 
 fn is_animal(reading: &Reading<'_>, actor: Actor) -> bool {
@@ -478,7 +507,9 @@ fn merely_caused(reading: &Reading<'_>, number: usize, frame: &Frame) -> bool {
     };
     let touched = reading.story.frames[..number].iter().any(|other| {
         let of_others = other.is_contact() && ![other.who, other.object].contains(&Some(SUBJECT));
-        of_others || other.sense == Sense::Push && other.happened()
+        // "causing it to brake" pushes nobody.
+        let pushes = !tokens[other.first].text.starts_with("caus");
+        of_others || pushes && other.sense == Sense::Push && other.happened()
     });
     word.starts_with("caus") && !touched && !before.iter().any(blow)
 }
@@ -544,6 +575,28 @@ fn sets_off_with_subject(reading: &Reading<'_>, frame: &Frame, words: &str) -> b
         && relations.any(|(relation, sentence)| *relation == Relation::Behind && *sentence == frame.sentence)
         && turned_green(reading, frame)
         && reading.before(SUBJECT).any(sets_off)
+}
+
+/// "When the light turned green, the AV waited and the van in the next lane proceeded": told of nothing before, it had stood there too.
+fn goes_at_green(reading: &Reading<'_>, frame: &Frame, words: &str) -> bool {
+    let Some(who) = frame.who.filter(|who| *who != SUBJECT) else { return false };
+    let known = &reading.story.world.actors[who];
+    let first = reading.story.sentences[frame.sentence].first;
+    let green = reading.story.tokens[first..frame.first].iter().any(|token| token.text == "green");
+    let goes = ["proceed", "moved", "started", "began", "went"].iter().any(|start| words.starts_with(start));
+    let own = reading.story.world.actors[SUBJECT].heading.map(|(heading, ..)| heading);
+    let other_way = known.heading.is_some_and(|(heading, ..)| own.is_some_and(|own| own != heading));
+    let comes = known.relations.iter().any(|(relation, _)| matches!(relation, Relation::Behind | Relation::Opposite));
+    let waits = |other: &Frame| {
+        other.who == Some(SUBJECT)
+            && other.sentence == frame.sentence
+            && matches!(other.act(), Some(Act::Hold | Act::Stop))
+    };
+    goes && green
+        && turned_green(reading, frame)
+        && frame.form == Form::Past
+        && !(other_way || comes)
+        && reading.story.frames.iter().any(waits)
 }
 
 /// "passed a parked trailer", "passed behind the van".

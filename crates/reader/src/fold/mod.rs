@@ -7,6 +7,7 @@ mod controls;
 mod driver;
 mod entry;
 mod flashback;
+mod lanes;
 mod movement;
 mod nobody;
 mod nominal;

@@ -346,8 +346,9 @@ fn movement(reading: &Reading<'_>, party: &Party, column: Option<Movement>, name
         {
             best = None;
         }
-        // Who passes has done with going backwards, and who drives on with its turn.
-        if matches!(fact.act, Act::Pass | Act::LaneChange)
+        // Who passes has done with going backwards, who turns where the column says so, and who drives on with its turn.
+        let turns = fact.act == Act::Turn && matches!(column, Some(Movement::LeftTurn | Movement::RightTurn));
+        if (turns || matches!(fact.act, Act::Pass | Act::LaneChange))
             && best.as_ref().is_some_and(|(_, known, _)| *known == Movement::Backing)
         {
             best = None;
@@ -357,6 +358,13 @@ fn movement(reading: &Reading<'_>, party: &Party, column: Option<Movement>, name
                 matches!(known, Movement::LeftTurn | Movement::RightTurn)
                     && !(words_of(fact).starts_with("approach") && words(source).starts_with("turning"))
             })
+        {
+            best = None;
+        }
+        // "pulled into the parking lane, then swerved back": it parked no more.
+        if matches!(fact.act, Act::Swerve | Act::PullOut)
+            && best.as_ref().is_some_and(|(_, known, _)| *known == Movement::ParkingManeuver)
+            && column != Some(Movement::ParkingManeuver)
         {
             best = None;
         }

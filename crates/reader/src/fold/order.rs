@@ -27,6 +27,12 @@ pub(crate) fn order(account: &Account) -> Option<Fact<FirstMover>> {
 fn by_standing(account: &Account, state: ContactState) -> Said {
     if group(account) == Some(KindGroup::Object) {
         let comes = told(&account.striker) == Some(Striker::Cp);
+        // "A bottle was thrown at it": they meet.
+        let rolls = account.partner.as_ref().is_some_and(|partner| partner.did(Act::Roll));
+        let front = !account.sv.zones.is_empty() && account.sv.zones.iter().all(|zone| zone.value == Z::Front);
+        if comes && rolls && front && !state.stands() {
+            return Some((FirstMover::Both, "a thing that comes across meets its front"));
+        }
         return Some(if comes {
             (FirstMover::Sv, "a thing moved into its way")
         } else {
@@ -119,6 +125,14 @@ fn by_zones(account: &Account, partner: &Party) -> Said {
     let drives = matches!(group(account), Some(KindGroup::Car | KindGroup::Truck));
     if plain_side(&account.sv) && plain_side(partner) && !thrown && drives {
         return Some((FirstMover::Both, "side on side they converge"));
+    }
+    // "steered over and struck its front corner": the flank came to the corner, as that came along.
+    let corner = !account.sv.zones.is_empty()
+        && account.sv.zones.iter().all(|zone| matches!(zone.value, Z::FrontLeft | Z::FrontRight));
+    let steers = (partner.did(Act::Drift) || partner.did(Act::Swerve)) && !partner.did(Act::Pass);
+    let steers = steers && told(&account.ahead) != Some(true);
+    if corner && plain_side(partner) && steers && striker == Some(Striker::Cp) && drives {
+        return Some((FirstMover::Both, "at about the same time"));
     }
     Some(match (front(&account.sv), flank(&account.sv), front(partner), flank(partner)) {
         (_, true, _, true) if striker == Some(Striker::Cp) => (FirstMover::Sv, "the other came to its flank"),

@@ -23,7 +23,9 @@ pub(super) fn side_of(reading: &Reading<'_>, actor: Actor, number: usize, act: A
     let goes_on = || if changes { side_as_before(reading, number) } else { None };
     let passes = || if changes { side_of_pass(reading, number) } else { None };
     let side = if sided(act) { told().or_else(entered).or_else(signalled) } else { None };
-    let side = side.or_else(goes_on).or_else(passes);
+    let kerb = || if changes { away_from_the_kerb(reading, actor, frame) } else { None };
+    let meant = || if changes { as_signaled(reading, actor, frame) } else { None };
+    let side = side.or_else(goes_on).or_else(passes).or_else(meant).or_else(kerb);
     side.or_else(|| into_turn_lane(reading, actor, frame, act))
         .or_else(|| if act == Act::Turn { turn_lane() } else { None })
         .or_else(|| turned_by_column(reading, actor, act))
@@ -74,6 +76,35 @@ fn side_of_pass(reading: &Reading<'_>, number: usize) -> Option<LeftRight> {
     let next = reading.story.frames.get(number + 1)?;
     let same = next.sentence == frame.sentence && next.who == frame.who && next.act() == Some(Act::Pass);
     next.side.filter(|_| same && next.happened())
+}
+
+/// "with its left turn signal on to change lanes. While changing lanes, it stopped": to the side that it had signaled.
+fn as_signaled(reading: &Reading<'_>, actor: Actor, frame: &Frame) -> Option<LeftRight> {
+    let from = reading.story.sentences[frame.sentence.saturating_sub(1)].first;
+    let words: Vec<&str> = reading.story.tokens[from..frame.first].iter().map(|token| token.text.as_str()).collect();
+    let of_subject =
+        actor == SUBJECT && reading.story.frames.iter().any(|other| other.who == Some(SUBJECT) && other.first >= from);
+    let signal = words.windows(3).rev().find_map(|run| match run {
+        ["its", side @ ("left" | "right"), "turn" | "signal" | "indicator" | "blinker"] => Some(*side),
+        _ => None,
+    });
+    match signal.filter(|_| of_subject && frame.form == Form::Ing)? {
+        "left" => Some(LeftRight::Left),
+        _ => Some(LeftRight::Right),
+    }
+}
+
+/// "A coupe traveling along the curb entered the next lane": the lanes are on its left.
+fn away_from_the_kerb(reading: &Reading<'_>, actor: Actor, frame: &Frame) -> Option<LeftRight> {
+    let along = reading.before(actor).take_while(|(_, before)| before.first < frame.first).any(|(number, before)| {
+        let (first, end) = reading.window(number);
+        let words = &reading.story.tokens[first..end.min(frame.first).max(first)];
+        let curb = words.windows(3).any(|run| {
+            run[0].text == "along" && run[1].text == "the" && matches!(run[2].text.as_str(), "curb" | "curbside")
+        });
+        curb && before.act() == Some(Act::Follow)
+    });
+    (along && actor != SUBJECT).then_some(LeftRight::Left)
 }
 
 /// "moved right, and then recentered itself": back to the other side.

@@ -1,6 +1,7 @@
 //! State at the contact as the words tell it, how long somebody had stood, and why.
 
 use super::acts::{avoids, begins_to_go_on, gains_speed, in_headline, sets_off_at_green};
+use super::lanes::waits_to_change;
 use super::speeds::is_of_last_contact;
 use super::{Reading, flashback, nominal};
 use crate::frame::Frame;
@@ -42,7 +43,7 @@ pub(super) fn state(reading: &Reading<'_>, actor: Actor) -> (Option<Fact<Contact
         if aside || act == Act::Follow && in_headline(reading, frame) || speed() {
             continue;
         }
-        if act == Act::Slow && told.stands() && avoids(reading, frame) {
+        if act == Act::Slow && told.stands() && avoids(reading, frame) || waits_to_change(reading, number, frame) {
             continue;
         }
         let act = match act {
@@ -122,6 +123,13 @@ impl Told {
             Act::Follow | Act::Enter if self.stands() && text.starts_with("continu") => return None,
             // "was stopped at a light, heading west".
             Act::Follow | Act::Turn if self.stands() && same_clause => return None,
+            // "reversed and maneuvered to the right": backwards.
+            Act::Drift | Act::Swerve
+                if self.state() == Some(ContactState::Reversing)
+                    && self.since.is_some_and(|(sentence, _)| sentence == frame.sentence) =>
+            {
+                return None;
+            }
             // "An SUV reversing along the kerb approached".
             Act::Follow
                 if self.state() == Some(ContactState::Reversing)

@@ -107,7 +107,9 @@ fn approached(clues: &Clues<'_>) -> Option<Fact<Origin>> {
         other == number + 1 && frame.form == Form::Ing && frame.act() == Some(Act::Follow)
     };
     let along = !known.several && known.kind.is_some_and(Kind::is_vehicle) && reading.before(actor).any(drives);
-    (!passes && (along || is_queue_met(reading, number))).then(|| reading.told(Origin::Ahead, first, end))
+    // "It encountered a double-parked van": that stands in a lane.
+    let in_lane = !known.several && reading.story.tokens[first..end].iter().any(|token| token.text == "double");
+    (!passes && (along || in_lane || is_queue_met(reading, number))).then(|| reading.told(Origin::Ahead, first, end))
 }
 
 /// "It approached a queue of stopped traffic ahead": whatever it was called before, it stands in front of it.
@@ -217,16 +219,26 @@ fn goes_its_way(clues: &Clues<'_>) -> Option<Fact<Origin>> {
 /// The words that say which way somebody goes stand no farther behind its name. [tokens]
 const WAY_WORDS: usize = 12;
 
-/// "a man standing on the south side of the road": left of who goes west.
+/// "a man standing on the south side of the road": left of who goes west. "Crossing from the south side": from there.
 fn at_side_of_road(clues: &Clues<'_>) -> Option<Fact<Origin>> {
     let (reading, actor) = (clues.reading, clues.actor);
     let own = reading.story.world.actors[SUBJECT].heading.map(|(compass, ..)| compass);
     let stands = |act: Option<Act>| matches!(act, Some(Act::Hold | Act::Stop));
     let walks = reading.story.world.actors[actor].kind.is_some_and(|kind| kind.group() == KindGroup::OnFoot);
     let turned = reading.did(SUBJECT, Act::Turn) || reading.did(SUBJECT, Act::UTurn);
-    let side = side_of_road_of(reading, actor, own, stands).filter(|_| walks && !turned)?;
-    let frame = reading.before(actor).find(|(_, frame)| stands(frame.act()))?.1;
-    Some(Fact { value: Origin::Beside { side }, source: reading.of(frame) })
+    if !walks || turned {
+        return None;
+    }
+    let of = |frame: &Frame| reading.of(frame);
+    let first = |act: &dyn Fn(Option<Act>) -> bool| {
+        reading.before(actor).map(|(_, frame)| frame).find(|frame| act(frame.act()))
+    };
+    if let Some(side) = side_of_road_of(reading, actor, own, stands) {
+        return Some(Fact { value: Origin::Beside { side }, source: of(first(&stands)?) });
+    }
+    let crosses = |act: Option<Act>| matches!(act, Some(Act::Cross | Act::Enter));
+    let side = side_of_road_of(reading, actor, own, crosses)?;
+    Some(Fact { value: Origin::Cross { side }, source: of(first(&crosses)?) })
 }
 
 /// Who struck the rear of a partner that is behind, or of another that is, came from behind too.

@@ -470,7 +470,12 @@ impl Parser<'_> {
         // "Turned to enter the center lane": it was not there before.
         let purpose = taken.first.checked_sub(1).is_some_and(|at| self.tokens[at].text == "to");
         let stepped = lane != LaneWord::Opposing && (taken.first..taken.end).any(|at| self.tokens[at].text == "into");
-        let enters = taken.act() == Some(Act::Enter) && preposition.is_none() && purpose || stepped;
+        let (enters, first) = (taken.act() == Some(Act::Enter) && preposition.is_none(), taken.first);
+        // "drifted over and entered the parking lane".
+        let strip = matches!(lane, LaneWord::Curb | LaneWord::Bike | LaneWord::Shoulder);
+        let came = strip
+            && self.frames.iter().any(|before| before.first < first && before.who == who && before.act().is_some());
+        let enters = enters && (purpose || came) || stepped;
         if let Some(who) = who.filter(|_| !(into || enters) || from) {
             self.world.actors[who].lane.get_or_insert(stands);
         }

@@ -230,6 +230,21 @@ impl Parser<'_> {
         false
     }
 
+    /// "yielded to a fire truck, with its siren on, traveling south": behind the second comma it is still told of the truck.
+    fn set_off_by_with(&self, comma: usize) -> Option<Mention> {
+        const WITHIN: usize = 10;
+        let first = comma.saturating_sub(WITHIN);
+        let before = (first..comma).rev().find(|&at| self.tokens[at].text == ",")?;
+        if self.tokens[before + 1].text != "with" {
+            return None;
+        }
+        let met = |frame: &&Frame| frame.sentence == self.sentence && frame.first < before && frame.object.is_some();
+        let frame =
+            self.frames.iter().rev().find(met).filter(|frame| matches!(frame.sense, Sense::Yield | Sense::See))?;
+        let actor = frame.object.filter(|actor| *actor != SUBJECT && self.world.actors[*actor].acts())?;
+        Some(Mention { actor, piece: None, person: None, end: before })
+    }
+
     pub(super) fn comma(&mut self, comma: usize, next: Option<&Chunk>, carry: &mut Carry) -> bool {
         self.leave_place(carry);
         carry.after_comma = true;
@@ -264,7 +279,8 @@ impl Parser<'_> {
             .described
             .take()
             .filter(|described| carry.frame.is_none_or(|frame| self.frames[frame].who == Some(described.actor)));
-        carry.described = carry.subject.clone().filter(|_| carry.relative).or(still);
+        carry.described =
+            carry.subject.clone().filter(|_| carry.relative).or(still).or_else(|| self.set_off_by_with(comma));
         if carry.relative && carry.has_verb {
             // A relative clause ends at its comma.
             carry.relative = false;

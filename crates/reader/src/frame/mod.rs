@@ -7,6 +7,7 @@ mod doors;
 mod joint;
 mod named;
 mod object;
+mod pairs;
 mod parser;
 mod pronoun;
 mod reword;
@@ -135,9 +136,11 @@ const MOST_TOKENS: usize = 6_000;
 pub fn story(text: &str, own: Own<'_>) -> Story {
     let mut tokens = crate::token::tokens(text);
     tokens.truncate(MOST_TOKENS);
-    // "V2", "Unit 2": another vehicle.
+    // "V2", "Vehicle2", "Unit 2": another vehicle.
     for at in (0..tokens.len()).rev() {
-        let number = tokens[at].text.strip_prefix('v').filter(|number| matches!(*number, "2" | "3" | "4" | "5"));
+        let word = tokens[at].text.as_str();
+        let number = word.strip_prefix("vehicle").or_else(|| word.strip_prefix('v'));
+        let number = number.filter(|number| matches!(*number, "2" | "3" | "4" | "5"));
         let unit = matches!(tokens[at].text.as_str(), "unit" | "party") && {
             let next = tokens.get(at + 1).map_or("", |next| next.text.as_str());
             matches!(next, "2" | "3" | "4" | "5")
@@ -147,16 +150,15 @@ pub fn story(text: &str, own: Own<'_>) -> Story {
             && tokens.get(at + 1).is_some_and(|next| {
                 next.start == tokens[at].end + 1 && matches!(next.text.as_str(), "1" | "2" | "3" | "4" | "5")
             });
-        let unit = unit || dashed;
-        if let Some(number) = number.map(str::to_owned) {
-            let middle = tokens[at].start + 1;
+        let number = number.map(str::to_owned);
+        let unit = unit || dashed || number.is_some();
+        if let Some(number) = number {
+            let middle = tokens[at].end - number.len();
             let end = std::mem::replace(&mut tokens[at].end, middle);
             let token = Token { start: middle, end, text: number, kind: TokenKind::Number, capital: false };
             tokens.insert(at + 1, token);
         }
-        if unit
-            || tokens[at].text.len() == 2 && tokens[at].text.starts_with('v') && tokens[at].end == tokens[at].start + 1
-        {
+        if unit {
             "vehicle".clone_into(&mut tokens[at].text);
             tokens[at].capital = false;
         }
@@ -212,6 +214,7 @@ pub fn story(text: &str, own: Own<'_>) -> Story {
         }
     }
     strikes_both(&mut frames, &mut world, &tokens);
+    pairs::apply(&mut frames, &mut world, &tokens);
     stood_itself(&mut frames, &tokens, &sentences);
     fall_once(&mut frames, &world);
     let about: Vec<(usize, Actor)> = frames
@@ -220,6 +223,11 @@ pub fn story(text: &str, own: Own<'_>) -> Story {
         .filter_map(|frame| Some((frame.sentence, frame.who.filter(|who| *who != SUBJECT)?)))
         .collect();
     for frame in &mut frames {
+        // "The fender and door panels touched the edge of the van's door": whose they are is not told, and the van's they are not.
+        let panels = frame.with.as_ref().is_some_and(|piece| piece.door && piece.owner.is_none());
+        if frame.is_contact() && frame.who == frame.object && panels && frame.who.is_some_and(|who| who != SUBJECT) {
+            (frame.who, frame.with) = (Some(SUBJECT), None);
+        }
         // Nobody touches itself.
         if frame.is_contact() && frame.who == Some(SUBJECT) && frame.object == Some(SUBJECT) {
             // "A cyclist behind did not stop when it slowed and struck its rear": whom the sentence is about.

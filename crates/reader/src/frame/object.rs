@@ -19,6 +19,10 @@ impl Parser<'_> {
             "by" => self.done_by(frame, mention, placed, carry),
             "into" | "against" => self.into(frame, preposition, mention, placed, carry),
             "off" if !self.frames[frame].is_contact() => {}
+            // "came out from behind a van", "from between two vans".
+            "behind" | "between" if self.frames[frame].sense == Sense::Act(Act::Enter) => {
+                self.frames[frame].object.get_or_insert(mention.actor);
+            }
             "onto" | "with" | "between" | "and" | "upon" | "on" | "at" | "to" | "off" => {
                 self.met(frame, preposition, mention, placed, carry);
             }

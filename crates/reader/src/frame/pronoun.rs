@@ -37,6 +37,14 @@ impl Parser<'_> {
         if let (true, Some(Some(struck))) = (hits && pushes, struck.map(|frame| frame.object)) {
             return struck;
         }
+        // "cut off the van, causing it to brake": whom it did that to.
+        let causes = carry.frame.is_some_and(|frame| self.tokens[self.frames[frame].first].text.starts_with("caus"));
+        let done_to = self.frames.iter().rev().skip(1).find(|frame| {
+            frame.sentence == self.sentence && frame.who == Some(actor) && frame.happened() && frame.object.is_some()
+        });
+        if let (true, Some(Some(object))) = (hits && pushes && causes, done_to.map(|frame| frame.object)) {
+            return object;
+        }
         match hits {
             // "A motorcycle was eastbound when a van turned across it and clipped it": of a sentence without the subject vehicle.
             true if actor != SUBJECT && self.world.actors[SUBJECT].sentence != Some(self.sentence) => {

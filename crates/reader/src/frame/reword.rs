@@ -8,6 +8,8 @@ use crate::token::{Token, TokenKind};
 pub(super) fn apply(tokens: &mut Vec<Token>) {
     join_most(tokens);
     name_system(tokens);
+    brake(tokens);
+    name_codes(tokens);
     hold_by_hand(tokens);
     name_passenger_cars(tokens);
     name_loose_boards(tokens);
@@ -102,6 +104,68 @@ fn drives(tokens: &[Token], at: usize) -> bool {
     let switched = |length: usize| matches!(word(at + length), "off" | "on" | "itself" | "down" | "online" | "offline");
     STEMS.iter().any(|stem| word(at).starts_with(stem)) && found.is_some_and(|found| !switched(found.length))
 }
+
+/// "began to break hard", "this abrupt breaking": spelled as it sounds.
+fn brake(tokens: &mut [Token]) {
+    let hard = |word: &str| {
+        matches!(word, "quickly" | "hard" | "suddenly" | "abruptly" | "sharply" | "heavily" | "rapidly")
+            || matches!(word, "abrupt" | "sudden" | "heavy" | "emergency" | "sharp")
+    };
+    for at in 1..tokens.len().saturating_sub(1) {
+        let brakes = match tokens[at].text.as_str() {
+            "break" => "brake",
+            "breaks" => "brakes",
+            "breaking" => "braking",
+            _ => continue,
+        };
+        let (before, behind) = (tokens[at - 1].text.as_str(), tokens[at + 1].text.as_str());
+        let ends = matches!(behind, "but" | "and" | "." | ",") && matches!(before, "to" | "started" | "began");
+        if hard(before) || hard(behind) || ends {
+            brakes.clone_into(&mut tokens[at].text);
+        }
+    }
+}
+
+/// "An Acme shuttle (ACME-POD-01) was eastbound. ... ACME-POD-01 stopped": a code in brackets, by which the story goes on.
+fn name_codes(tokens: &mut Vec<Token>) {
+    let lexicon = Lexicon::get();
+    let mut at = 1;
+    while at < tokens.len() {
+        let end = (at + 1..tokens.len().min(at + 2 + CODE_PARTS)).find(|&end| tokens[end].text == ")");
+        let code = end.filter(|&end| tokens[at].text == "(" && is_code(&tokens[at + 1..end]));
+        let Some(end) = code else {
+            at += 1;
+            continue;
+        };
+        let of_company = (at.saturating_sub(NAME_BEFORE)..at).any(|at| {
+            tokens[at].capital && lexicon.longest(tokens, at, |meaning| matches!(meaning, Meaning::Company)).is_some()
+        });
+        let code: Vec<String> = tokens[at + 1..end].iter().map(|token| token.text.clone()).collect();
+        let mut again = at + 1;
+        while of_company && again + code.len() <= tokens.len() {
+            if tokens[again..again + code.len()].iter().map(|token| &token.text).eq(&code) {
+                tokens[again].end = tokens[again + code.len() - 1].end;
+                "av".clone_into(&mut tokens[again].text);
+                tokens.drain(again + 1..again + code.len());
+            }
+            again += 1;
+        }
+        at += 1;
+    }
+}
+
+/// Whether these are the parts of a code: capitals, joined by hyphens with a number.
+fn is_code(parts: &[Token]) -> bool {
+    let joined = parts.windows(2).all(|pair| pair[1].start == pair[0].end + 1);
+    let number = parts.last().is_some_and(|last| last.kind == TokenKind::Number && last.text.len() > 1);
+    parts.len() > 1 && joined && number && parts[..parts.len() - 1].iter().all(|token| token.capital)
+}
+
+/// A code has no more parts than these. [tokens]
+const CODE_PARTS: usize = 4;
+
+/// So many words before the bracket may be of who is named. [tokens]
+const NAME_BEFORE: usize = 6;
 
 /// "a hand held stop sign", "holding up a stop sign": a paddle, and no sign that stands there.
 fn hold_by_hand(tokens: &mut [Token]) {

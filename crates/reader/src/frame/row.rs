@@ -382,6 +382,12 @@ pub(super) fn relation_behind(all: &[Placed], at: usize) -> Option<Relation> {
         return Some(*relation);
     }
     match (all.get(at + 1).map(|p| &p.chunk)?, all.get(at + 2).map(|p| &p.chunk)) {
+        // "the vehicle trailing the AV".
+        (Chunk::Verb(Sense::Act(Act::Follow), Form::Ing), Some(Chunk::Noun(noun)))
+            if noun.subject && matches!(&all[at].chunk, Chunk::Noun(named) if named.occupant.is_none()) =>
+        {
+            Some(Relation::Behind)
+        }
         (Chunk::Relation(relation), Some(Chunk::Noun(noun))) if noun.subject => Some(*relation),
         _ => None,
     }

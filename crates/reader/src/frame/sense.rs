@@ -12,7 +12,7 @@ use recrash_model::account::{Act, Compass, LeftRight};
 
 type Rule = fn(&Parser<'_>, &Spoken<'_>, &Carry) -> Option<Sense>;
 
-const SENSES: [Rule; 18] = [
+const SENSES: [Rule; 22] = [
     stands_backed_up,
     remains_so,
     is_ridden,
@@ -25,7 +25,11 @@ const SENSES: [Rule; 18] = [
     lies_between,
     drives_between_numbers,
     begins_to_move_over,
+    begins_to_drive_past,
+    reaches_in,
     gets_in,
+    is_outside,
+    is_of_a_hand,
     stands_open,
     swings_over,
     moves_itself,
@@ -235,6 +239,32 @@ fn begins_to_move_over(parser: &Parser<'_>, verb: &Spoken<'_>, _carry: &Carry) -
     }
 }
 
+/// "began to drive past it", "started driving next to and mostly past it": it comes by. Next to it alone, it comes along.
+fn begins_to_drive_past(parser: &Parser<'_>, verb: &Spoken<'_>, _carry: &Carry) -> Option<Sense> {
+    let placed = verb.placed();
+    let moves = parser.tokens[placed.first..placed.end]
+        .iter()
+        .any(|token| ["driv", "travel", "mov"].iter().any(|stem| token.text.starts_with(stem)));
+    if verb.sense != Sense::Act(Act::SetOff) || !moves {
+        return None;
+    }
+    let clause = parser.tokens[placed.end..].iter().take(6).map(|token| token.text.as_str());
+    let words: Vec<&str> = clause.take_while(|word| !matches!(*word, "," | "." | "when" | "while" | "as")).collect();
+    let beside = matches!(words.as_slice(), ["alongside", ..] | ["next", "to", ..]);
+    match words.contains(&"past") {
+        true => Some(Sense::Act(Act::Pass)),
+        false => beside.then_some(Sense::Act(Act::Follow)),
+    }
+}
+
+/// "came upon a double-parked van partially intruding into its lane": so it stands.
+fn reaches_in(parser: &Parser<'_>, verb: &Spoken<'_>, carry: &Carry) -> Option<Sense> {
+    let reaches = ["intrud", "encroach", "protrud", "jut"].iter().any(|stem| verb.word(parser).starts_with(stem));
+    let last = carry.last.as_ref().filter(|last| last.actor != SUBJECT && last.end + 1 >= verb.placed().first)?;
+    let parked = parser.world.actors[last.actor].parked;
+    (reaches && parked && verb.sense == Sense::Act(Act::Drift)).then_some(Sense::Other)
+}
+
 /// "to the left", "toward its right".
 fn leads_aside<'a>(word: &impl Fn(usize) -> &'a str) -> bool {
     matches!(word(0), "to" | "toward" | "towards")
@@ -246,6 +276,24 @@ fn leads_aside<'a>(word: &impl Fn(usize) -> &'a str) -> bool {
 fn gets_in(_parser: &Parser<'_>, verb: &Spoken<'_>, carry: &Carry) -> Option<Sense> {
     let rider = carry.subject.as_ref().is_some_and(|subject| subject.person == Some(Occupant::Rider));
     (rider && verb.sense == Sense::Act(Act::Enter)).then_some(Sense::Other)
+}
+
+/// "The passengers approached the AV", "a passenger was standing beside it": who will ride in it is no vehicle.
+fn is_outside(parser: &Parser<'_>, verb: &Spoken<'_>, carry: &Carry) -> Option<Sense> {
+    // "The AV, which had no passengers, was stopped", "causing the AV to wait".
+    let at_once = |end: usize| !parser.tokens[end..verb.placed().first.max(end)].iter().any(|token| token.text == ",");
+    let rider = carry.subject.as_ref().is_some_and(|subject| {
+        subject.actor == SUBJECT && subject.person == Some(Occupant::Rider) && at_once(subject.end)
+    });
+    let walks = matches!(verb.sense, Sense::Approach | Sense::Act(Act::Hold | Act::Follow | Act::Cross));
+    (rider && walks).then_some(Sense::Other)
+}
+
+/// "while his hand rested on the wheel": the vehicle did not rest.
+fn is_of_a_hand(parser: &Parser<'_>, verb: &Spoken<'_>, _carry: &Carry) -> Option<Sense> {
+    let before = verb.placed().first.checked_sub(1).map_or("", |at| parser.tokens[at].text.as_str());
+    let hand = matches!(before, "hand" | "hands" | "foot" | "feet" | "head" | "arm");
+    (hand && matches!(verb.sense, Sense::Act(_))).then_some(Sense::Other)
 }
 
 /// "parked with both doors open", "had its door open": it had been opened before.

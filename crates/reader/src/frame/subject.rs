@@ -5,7 +5,7 @@ use super::row::Spoken;
 use crate::chunk::{Chunk, Joint, Placed, Spot};
 use crate::lexicon::{Form, Meaning, Relation, Sense};
 use crate::world::{Actor, SUBJECT};
-use recrash_model::account::{Act, LeftRight};
+use recrash_model::account::{Act, KindGroup, LeftRight};
 
 /// Participles that tell how somebody stands, and no act.
 const HOW_ONE_STANDS: [&str; 12] = [
@@ -111,7 +111,11 @@ impl Parser<'_> {
                 && matches!(waiting.sense, Sense::Act(Act::Pass | Act::Enter) | Sense::Approach)
                 && waiting.object != Some(SUBJECT)
                 && !waiting.relations.iter().any(|(_, to)| *to == Some(SUBJECT));
-            let dangles = new && (stands || goes_on || passes);
+            // "While driving in its lane, a man ...": who walks has none.
+            let lane = self.tokens[waiting.first..].iter().take(NOUN_WORDS).any(|token| token.text == "lane");
+            let on_foot = self.world.actors[actor].kind.is_some_and(|kind| kind.group() == KindGroup::OnFoot);
+            let drives = lane && on_foot && waiting.act() == Some(Act::Follow) && self.world.topic == SUBJECT;
+            let dangles = new && (stands || goes_on || passes || drives);
             if self.frames[pending].passive {
                 self.frames[pending].object = Some(actor);
                 continue;

@@ -15,7 +15,7 @@ pub(super) fn apply(frames: &mut [Frame], tokens: &[Token], sentences: &[Sentenc
     for frame in frames {
         let sentence = sentences[frame.sentence];
         let before = &tokens[sentence.first..frame.first];
-        if behind_if(before) || behind_would_have(before) || behind_expected(before) {
+        if behind_if(before) || behind_would_have(before) || behind_expected(before) || behind_fear(before) {
             frame.progress = Progress::Wished;
         }
     }
@@ -37,6 +37,19 @@ fn behind_would_have(before: &[Token]) -> bool {
     let near = &before[before.len().saturating_sub(WOULD_BEFORE)..];
     let have = near.iter().rposition(|token| token.text == "have");
     have.is_some_and(|have| near[..have].iter().any(|token| WOULD.contains(&token.text.as_str())))
+}
+
+/// "saw a risk of hitting the wall", "braked to avoid scraping it": what was feared.
+fn behind_fear(before: &[Token]) -> bool {
+    const FEARS: [&str; 8] =
+        ["risk", "danger", "possibility", "chance", "chances", "threat", "likelihood", "probability"];
+    let word = |back: usize| before.len().checked_sub(back).map_or("", |at| before[at].text.as_str());
+    // "of potentially hitting it".
+    let adverb = usize::from(word(1).ends_with("ly"));
+    let feared = word(1 + adverb) == "of" && FEARS.contains(&word(2 + adverb));
+    // "was unable to avoid hitting it": so it did.
+    let in_vain = (2..6).any(|back| matches!(word(back), "unable" | "not" | "couldn" | "failed" | "late"));
+    feared || word(1).starts_with("avoid") && !in_vain
 }
 
 /// "predicted that it would wait", and not all that stands behind it.

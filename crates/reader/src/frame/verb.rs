@@ -153,8 +153,20 @@ impl Parser<'_> {
             && !carry.has_verb
             && carry.last_is(carry.subject.as_ref())
             && (another_finite(verb.all, verb.at)
-                // "a van, first parked behind it, set off".
-                || carry.after_comma && goes_on_behind_comma(&verb.all[verb.at + 1..]))
+                // "a van, first parked behind it, set off", "a van parked at the curb, opened its door".
+                || (carry.after_comma || matches!(verb.sense, Sense::Parked | Sense::Act(Act::Park))) && goes_on_behind_comma(&verb.all[verb.at + 1..])
+                || self.was_so_at_first(verb))
+    }
+
+    /// "a truck initially stopped behind it, and partly in the next lane, attempted to pass": how it was before its verb.
+    fn was_so_at_first(&self, verb: &Spoken<'_>) -> bool {
+        let before = verb.placed().first.checked_sub(1).map_or("", |at| self.tokens[at].text.as_str());
+        let outer = |chunk: &Chunk| {
+            !matches!(chunk, Chunk::Joint(joint) if *joint != Joint::And) && !matches!(chunk, Chunk::Relative)
+        };
+        let mut clause = verb.all[verb.at + 1..].iter().map(|placed| &placed.chunk).take_while(|chunk| outer(chunk));
+        matches!(before, "initially" | "originally" | "previously")
+            && clause.any(|chunk| matches!(chunk, Chunk::Verb(_, Form::Past | Form::Present)))
     }
 
     /// Whether a verb of stopping tells that somebody stood: "was stopped", "a truck stopped in the road", "while stopped".

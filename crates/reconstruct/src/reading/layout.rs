@@ -11,11 +11,8 @@ impl Counted {
     fn of(text: &str) -> Option<Self> {
         let words: Vec<&str> = text.split(|letter: char| !letter.is_alphanumeric()).collect();
         let has = |word: &str| words.iter().any(|other| other.eq_ignore_ascii_case(word));
-        let number = match (has("second") || has("2nd"), has("third") || has("3rd")) {
-            (true, _) => 2,
-            (_, true) => 3,
-            _ => return None,
-        };
+        let counts = [(2, "second", "2nd"), (3, "third", "3rd"), (4, "fourth", "4th")];
+        let (number, ..) = counts.into_iter().find(|(_, word, digits)| has(word) || has(digits))?;
         let from = match (has("left") || has("leftmost"), has("right") || has("rightmost")) {
             (true, false) => LeftRight::Left,
             (false, true) => LeftRight::Right,
@@ -161,6 +158,8 @@ mod tests {
         assert_eq!((third.place(4), third.place(3), third.place(2)), (Some(1), Some(0), None));
         let second = Counted::of("the second from the left lane").unwrap();
         assert_eq!((second.place(4), second.words().as_str()), (Some(1), "the second lane from the left"));
+        let fourth = Counted::of("the fourth from the right lane").unwrap();
+        assert_eq!((fourth.place(5), fourth.words().as_str()), (Some(1), "the fourth lane from the right"));
         assert_eq!(Counted::of("the right lane"), None);
     }
 }

@@ -22,7 +22,7 @@ impl Counted {
     }
 
     pub(crate) fn words(self) -> String {
-        let number = if self.number == 2 { "second" } else { "third" };
+        let number = ["second", "third"].get(self.number.wrapping_sub(2)).unwrap_or(&"fourth");
         let side = if self.from == LeftRight::Left { "left" } else { "right" };
         format!("the {number} lane from the {side}")
     }

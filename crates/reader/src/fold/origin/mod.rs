@@ -305,6 +305,7 @@ fn counted(words: &str) -> Option<(u8, LeftRight)> {
     let number = words.split(|c: char| !c.is_alphanumeric()).find_map(|word| match word {
         "second" | "2nd" => Some(2),
         "third" | "3rd" => Some(3),
+        "fourth" | "4th" => Some(4),
         "leftmost" | "rightmost" | "left" | "right" => Some(1),
         _ => None,
     })?;

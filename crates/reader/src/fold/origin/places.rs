@@ -6,7 +6,7 @@ use crate::fold::types::turning;
 use crate::frame::Frame;
 use crate::lexicon::{Relation, Sense};
 use crate::world::{Actor, SUBJECT};
-use recrash_model::account::{Account, Act, ActFact, Compass, LeftRight, PlaceKind, Source};
+use recrash_model::account::{Account, Act, ActFact, Compass, LaneWord, LeftRight, PlaceKind, Source};
 use recrash_model::template::RoadType;
 
 /// The side of the road from which somebody comes, where its words name it: "from the north side of the street", "between cars on the
@@ -35,8 +35,8 @@ pub(crate) fn side_of_road_of(
         _ => None,
     };
     let road = |at: usize| (at..at + 5).any(|at| matches!(word(at), "road" | "roadway" | "street" | "alley" | "lot"));
-    reading.before(actor).filter(|(_, frame)| comes(frame.act())).find_map(|(_, frame)| {
-        let (first, end) = (frame.first, reading.story.sentences[frame.sentence].end);
+    reading.before(actor).filter(|(_, frame)| comes(frame.act())).find_map(|(number, _)| {
+        let (first, end) = reading.window(number);
         (first..end).find_map(|at| {
             let kerb = matches!(word(at + 1), "sidewalk" | "curb");
             match word(at) {
@@ -51,6 +51,34 @@ pub(crate) fn side_of_road_of(
             }
         })
     })
+}
+
+/// Behind whom, or from between whom, somebody comes out: "emerged from behind the van".
+pub(super) fn screen(reading: &Reading<'_>, number: usize, frame: &Frame) -> Option<Actor> {
+    let (first, end) = reading.window(number);
+    let words = &reading.story.tokens[first..end];
+    let from = words
+        .windows(2)
+        .any(|pair| pair[0].text == "from" && matches!(pair[1].text.as_str(), "behind" | "between" | "in"));
+    let place = |(relation, to): &(Relation, Option<Actor>)| {
+        if matches!(relation, Relation::Behind | Relation::Ahead) { *to } else { None }
+    };
+    let hides = frame.relations.iter().find_map(place).or(frame.object);
+    hides.filter(|hides| from && *hides != SUBJECT && frame.who != Some(*hides))
+}
+
+/// On which side of the subject vehicle somebody stands behind whom another comes out: as told, or where the oncoming traffic is.
+pub(super) fn side_of_screen(reading: &Reading<'_>, actor: Actor, own: Option<Compass>) -> Option<LeftRight> {
+    let known = &reading.story.world.actors[actor];
+    let told = known.relations.iter().find_map(|(relation, _)| match relation {
+        Relation::Left | Relation::Opposite => Some(LeftRight::Left),
+        Relation::Right => Some(LeftRight::Right),
+        _ => None,
+    });
+    let against = known.heading.is_some_and(|(heading, ..)| own.is_some_and(|own| own.eighths_to(heading) == 4));
+    let opposing = against || known.lane.is_some_and(|(lane, ..)| lane == LaneWord::Opposing);
+    let stands = |act: Option<Act>| matches!(act, Some(Act::Hold | Act::Stop));
+    told.or(opposing.then_some(LeftRight::Left)).or_else(|| side_of_road_of(reading, actor, own, stands))
 }
 
 /// Whether somebody is told to go uphill (or downhill).

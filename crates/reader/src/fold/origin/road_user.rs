@@ -3,14 +3,14 @@
 //!
 //! A new rule goes into [`RULES`], before all that would say something else of its case.
 
+mod spots;
+
 use super::fallback::{square_front, zone_side};
 use super::places::{
-    after_its_turn, at_curb, behind_in_next_lane, climbs, drives_on_another, faces_only, goes_over_to_pass, in_stall,
-    is_across, lead_of_subject, on_side_street, passes_subject, side_named, side_of_road, stood_in,
-    turn_onto_its_street,
+    after_its_turn, behind_in_next_lane, climbs, drives_on_another, faces_only, goes_over_to_pass, lead_of_subject,
+    on_side_street, passes_subject, screen, side_of_road, side_of_screen, turn_onto_its_street,
 };
 use super::{Clues, changed_from, first_relation, lane_side, relation_to};
-use crate::chunk::Spot;
 use crate::fold::Reading;
 use crate::fold::party::has_zone;
 use crate::fold::types::{turn_side, turning};
@@ -49,7 +49,7 @@ struct Case<'a> {
 type Told = Option<Fact<Origin>>;
 type Rule = fn(&Case<'_>) -> Told;
 
-const RULES: [Rule; 39] = [
+const RULES: [Rule; 40] = [
     |case| case.thrown_at_the_rear(),
     |case| case.out_of_a_place(),
     |case| case.stood_in_a_stall(),
@@ -69,6 +69,7 @@ const RULES: [Rule; 39] = [
     |case| case.turns_onto_its_street(),
     |case| case.gives_no_way(),
     |case| case.by_directions(),
+    |case| case.out_from_behind(),
     |case| case.on_another_street(),
     |case| case.up_and_down_a_hill(),
     |case| case.goes_the_wrong_way(),
@@ -142,7 +143,8 @@ impl<'a> Case<'a> {
         let turned = |fact: &&recrash_model::account::ActFact| {
             !fact.after_contact && !fact.begun && matches!(fact.act, Act::Turn | Act::UTurn)
         };
-        let turned = account.sv.acts.iter().any(|fact| turned(&fact)) && !turning(&account.sv);
+        let done = account.sv.acts.iter().any(|fact| turned(&fact) && fact.done);
+        let turned = account.sv.acts.iter().any(|fact| turned(&fact)) && !turning(&account.sv) || done;
         let turned = account.sv.heading_after.as_ref().filter(|_| turned);
         let own = turned.map(|fact| fact.value).or_else(|| after_its_turn(account));
         // Who faces one way and goes backwards comes from there.
@@ -183,6 +185,15 @@ impl<'a> Case<'a> {
         told_as(Origin::Cross { side }, self.clues.has(relation_to(side)))
     }
 
+    /// The side from which it goes square to the way of the subject vehicle, by the directions of both.
+    fn square_side(&self) -> Option<LeftRight> {
+        match self.turn? {
+            2 => Some(LeftRight::Left),
+            6 => Some(LeftRight::Right),
+            _ => None,
+        }
+    }
+
     fn first_is_side(&self) -> bool {
         matches!(self.first, Some(Relation::Left | Relation::Right))
     }
@@ -217,104 +228,6 @@ impl<'a> Case<'a> {
         None
     }
 
-    /// "pulled out of a stall", "came from a driveway".
-    fn out_of_a_place(&self) -> Told {
-        let (number, frame) = self.frames().find(|(_, frame)| frame.out_of.is_some())?;
-        if self.drove_on(number) {
-            return None;
-        }
-        if let Some(stood) = self.stood_after(number) {
-            return told_as(Origin::Ahead, stood);
-        }
-        let of_road = || side_of_road(self.reading, self.actor, self.account);
-        let drives_out = matches!(frame.out_of, Some(Spot::Driveway));
-        let side = self.side.or_else(|| if drives_out { of_road() } else { None }).or(self.touched);
-        let origin = match frame.out_of? {
-            Spot::Stall => self.out_of_a_stall(number),
-            Spot::SideStreet if self.side.is_some() => {
-                self.side.map_or(Origin::Opposite, |side| Origin::Cross { side })
-            }
-            Spot::Driveway | Spot::SideStreet => Origin::Driveway { side },
-            Spot::Curb => Origin::Parked { side },
-            Spot::Sidewalk => Origin::Sidewalk { side },
-        };
-        let (first, end) = self.reading.window(number);
-        told_as(origin, self.reading.words(first, end))
-    }
-
-    /// "stopped behind a truck that had left a driveway and stood across the road": where it stood as the subject vehicle came up to it.
-    fn stood_after(&self, number: usize) -> Option<Source> {
-        let stands = |frame: &Frame| matches!(frame.act(), Some(Act::Stop | Act::Hold)) && frame.sense != Sense::Parked;
-        let stood = self.frames().any(|(later, frame)| later > number && stands(frame));
-        let behind = |frame: &Frame| frame.relations.contains(&(Relation::Behind, Some(self.actor)));
-        let mut own = self.reading.before(SUBJECT).filter(|(_, frame)| frame.happened() && behind(frame));
-        let (came, _) = own.next().filter(|_| stood)?;
-        let (first, end) = self.reading.window(came);
-        Some(self.reading.words(first, end))
-    }
-
-    fn out_of_a_stall(&self, number: usize) -> Origin {
-        // "left a row of parked cars to pass behind it": across its rear, from the side that it touches with.
-        let behind_it = self.passes_behind().and_then(|fact| match fact.value {
-            Origin::Cross { side } => Some(side),
-            _ => None,
-        });
-        let side = behind_it.or(self.side_or_touched());
-        let curb = at_curb(self.reading, self.actor);
-        if self.did(Act::Reverse) {
-            // Parked behind it, and backwards into its rear.
-            if self.parked
-                && self.behind_first()
-                && self.side.is_none()
-                && only(&self.account.sv, Z::is_rear)
-                && only(self.partner, Z::is_rear)
-            {
-                return Origin::Behind;
-            }
-            // Out of a spot at the kerb, backwards: it was ahead of who is touched in front.
-            if square_front(self.account) && (curb || self.ahead && !is_across(self.reading, number, self.account)) {
-                return Origin::Ahead;
-            }
-            // Both go backwards, and meet at their rears.
-            if self.sv_reverses() && only(&self.account.sv, Z::is_rear) {
-                return Origin::Behind;
-            }
-        } else if self.parked && self.behind_first() {
-            // Out of the space behind it, or a row of them there.
-            return Origin::Behind;
-        }
-        if curb { Origin::Parked { side } } else { Origin::Stall { side } }
-    }
-
-    /// "was parked in a stall and turned out".
-    fn stood_in_a_stall(&self) -> Told {
-        let reverses = self.did(Act::Reverse);
-        let leaves =
-            reverses || [Act::Turn, Act::PullOut, Act::SetOff, Act::Follow].into_iter().any(|act| self.did(act));
-        // Parked ahead of it, and backwards: no stall across.
-        let along = reverses && self.ahead && square_front(self.account);
-        if !self.parked || !leaves || along {
-            return None;
-        }
-        let source = in_stall(self.reading, self.actor)?;
-        // Backwards out of one that is behind it, into its rear.
-        let at_rear = only(&self.account.sv, Z::is_rear) && only(self.partner, Z::is_rear);
-        if self.behind_first() && (!reverses || at_rear) {
-            return told_as(Origin::Behind, source);
-        }
-        told_as(Origin::Stall { side: self.side_or_touched() }, source)
-    }
-
-    /// It stood in a driveway, and came out of it backwards.
-    fn backwards_out_of_a_driveway(&self) -> Told {
-        if !self.parked || !self.did(Act::Reverse) {
-            return None;
-        }
-        let source = stood_in(self.reading, self.actor, &["driveway", "driveways"])?;
-        let across = self.clues.any(Relation::Opposite).then_some(LeftRight::Left);
-        told_as(Origin::Driveway { side: self.side.or(across).or(self.touched) }, source)
-    }
-
     /// It was ahead in one lane, and the subject vehicle left that lane.
     fn ahead_in_the_lane_that_was_left(&self) -> Told {
         let mut acts = self.account.sv.acts.iter();
@@ -332,8 +245,7 @@ impl<'a> Case<'a> {
             return None;
         }
         // Backwards out of a way across.
-        if let (Some(2 | 6), Some(heading), false) = (self.turn, self.heading, square_front(self.account)) {
-            let side = if self.turn == Some(2) { LeftRight::Left } else { LeftRight::Right };
+        if let (Some(side), Some(heading), false) = (self.square_side(), self.heading, square_front(self.account)) {
             return told_as(Origin::Cross { side }, heading.source.clone());
         }
         let from_front = self.clues.any(Relation::Opposite) && only(&self.account.sv, |zone| zone == Z::Front);
@@ -357,18 +269,6 @@ impl<'a> Case<'a> {
             return by_rule(Origin::Ahead, "who goes backwards into the front was ahead");
         }
         None
-    }
-
-    /// A door of a parked one.
-    fn opens_a_door(&self) -> Told {
-        // "was stopped in a curbside parking spot".
-        let stands = told(&self.partner.state).is_some_and(ContactState::stands);
-        let at_the_kerb = || at_curb(self.reading, self.actor) || in_stall(self.reading, self.actor).is_some();
-        if !(self.parked || stands && at_the_kerb()) || !self.did(Act::OpenDoor) {
-            return None;
-        }
-        let opens = |frame: &Frame| frame.sense == Sense::Parked || frame.act() == Some(Act::OpenDoor);
-        told_as(Origin::Parked { side: self.side_or_touched() }, self.clues.source(opens))
     }
 
     /// "passing behind it": across its rear, which is then on the side that it touches with.
@@ -422,56 +322,16 @@ impl<'a> Case<'a> {
         told_as(Origin::Cross { side }, self.reading.words(first, end))
     }
 
-    /// "pulled out from the kerb".
-    fn leaves_the_kerb(&self) -> Told {
-        let (number, _) = self.frames().find(|(_, frame)| frame.act() == Some(Act::PullOut))?;
-        let elsewhere = self.behind_first() || matches!(self.turn, Some(2 | 6));
-        if self.drove_on(number) || !self.parked && elsewhere {
-            return None;
-        }
-        // "stopped in the left lane after it had left the kerb": where it stood.
-        let acts = &self.partner.acts;
-        let left = acts.iter().position(|fact| fact.act == Act::PullOut && !fact.after_contact);
-        let stands = |fact: &ActFact| matches!(fact.act, Act::Stop | Act::Hold) && !fact.after_contact;
-        let stood = left.is_some_and(|left| acts[left + 1..].iter().any(stands));
-        if let (true, Some(side)) = (stood, lane_side(self.account)) {
-            return by_rule(Origin::Beside { side }, "lanes of both");
-        }
-        // "A dog came out from between parked cars on the left".
-        let group = told(&self.partner.kind).map(|kind| kind.group());
-        if group == Some(KindGroup::Animal) {
-            let side = self.side_or_touched().or_else(|| side_named(self.reading, number))?;
-            return told_as(Origin::Cross { side }, self.words_of(Act::PullOut));
-        }
-        told_as(Origin::Parked { side: self.side_or_touched() }, self.words_of(Act::PullOut))
-    }
-
-    /// "A car that had been stopped along the curb merged into the lane", "a taxi at the right curb made a U-turn".
-    fn goes_over_from_the_kerb(&self) -> Told {
-        let goes = |frame: &Frame| frame.happened() && matches!(frame.act(), Some(Act::LaneChange | Act::UTurn));
-        let (_, frame) = self.frames().find(|(_, frame)| goes(frame))?;
-        let (_, named) = self.reading.story.world.actors[self.actor].kind_tokens?;
-        let sentence = self.reading.story.sentences[frame.sentence];
-        if self.behind_first() || !(sentence.first..=frame.first).contains(&named) {
-            return None;
-        }
-        let words = &self.reading.story.tokens[named..frame.first];
-        let others =
-            self.reading.story.frames.iter().any(|other| {
-                (named..frame.first).contains(&other.first) && other.who.is_some_and(|who| who != self.actor)
-            });
-        let word = |at: usize| words.get(at).map_or("", |token| token.text.as_str());
-        let curb = (0..words.len()).any(|at| matches!(word(at), "curb" | "curbside") && word(at + 1) != "lane");
-        let drove = words.iter().any(|token| matches!(token.text.as_str(), "traveling" | "driving" | "passing"));
-        if others || drove || !curb {
-            return None;
-        }
-        told_as(Origin::Parked { side: self.side_or_touched() }, self.words_of(frame.act()?))
-    }
-
     fn moves_over_from_behind(&self) -> Told {
         let side = lane_side(self.account)?;
-        if self.behind && self.moved_over() { by_rule(Origin::Beside { side }, "lanes of both") } else { None }
+        if !(self.behind && self.moved_over()) {
+            return None;
+        }
+        // "changed lanes to the left, behind it, and to the left again": it went by behind it, and met its other side.
+        if self.touched == Some(side.other()) {
+            return told_as(Origin::Behind, self.clues.has(Relation::Behind));
+        }
+        by_rule(Origin::Beside { side }, "lanes of both")
     }
 
     /// Behind it, in the lane that it goes to.
@@ -505,8 +365,14 @@ impl<'a> Case<'a> {
         if self.first != Some(Relation::Beside) || self.other_way() {
             return None;
         }
-        let side = lane_side(self.account).or(self.touched)?;
+        let side = lane_side(self.account).or(self.touched).or_else(|| self.side_it_left())?;
         told_as(Origin::Beside { side }, self.clues.has(Relation::Beside))
+    }
+
+    /// "was in the adjacent lane, and changed lanes to the left": it had been on the right.
+    fn side_it_left(&self) -> Option<LeftRight> {
+        let over = |fact: &&ActFact| matches!(fact.act, Act::LaneChange | Act::Swerve) && !fact.after_contact;
+        self.partner.acts.iter().find(over)?.side.map(LeftRight::other)
     }
 
     /// Out of the street that crosses, into its way.
@@ -534,8 +400,7 @@ impl<'a> Case<'a> {
             4 if self.touched.is_some() && self.did(Act::Reverse) && !self.other_way() => {
                 told_as(Origin::Beside { side: self.touched? }, source)
             }
-            2 => told_as(Origin::Cross { side: LeftRight::Left }, source),
-            6 => told_as(Origin::Cross { side: LeftRight::Right }, source),
+            2 | 6 => told_as(Origin::Cross { side: self.square_side()? }, source),
             4 => told_as(Origin::Opposite, source),
             // It turned into the road of the subject vehicle: it came along another one, which crosses.
             3 | 5 if self.turned_into_its_road() => {
@@ -544,7 +409,9 @@ impl<'a> Case<'a> {
             }
             3 | 5 => {
                 let opposite = self.clues.any(Relation::Opposite) || self.partner.did(Act::WrongWay);
-                if opposite || !self.did(Act::Pass) { told_as(Origin::Opposite, source) } else { None }
+                // "completed its turn and passed it": the other way.
+                let turned = self.did(Act::Turn) && !self.behind;
+                if opposite || turned || !self.did(Act::Pass) { told_as(Origin::Opposite, source) } else { None }
             }
             _ => self.same_way(),
         }
@@ -589,6 +456,20 @@ impl<'a> Case<'a> {
             return by_rule(Origin::Behind, "directions of both");
         }
         None
+    }
+
+    /// "A man stepped out from behind a van that was parked on the right": on foot, from the side of what hid him.
+    fn out_from_behind(&self) -> Told {
+        let group = told(&self.partner.kind)?.group();
+        if !matches!(group, KindGroup::OnFoot | KindGroup::Cyclist | KindGroup::Animal) || self.side.is_some() {
+            return None;
+        }
+        let own = self.account.sv.heading.as_ref().map(|heading| heading.value);
+        self.frames().find_map(|(number, frame)| {
+            let side = side_of_screen(self.reading, screen(self.reading, number, frame)?, own)?;
+            let (first, end) = self.reading.window(number);
+            told_as(Origin::Cross { side }, self.reading.words(first, end))
+        })
     }
 
     /// "The AV drove on Elm Street, the van on Oak Street", neither of whom turned.
