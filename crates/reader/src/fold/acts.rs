@@ -628,22 +628,25 @@ pub(super) fn not_done(reading: &Reading<'_>, number: usize, frame: &Frame) -> O
         Some(Act::RunStop)
     } else if named.iter().any(|(feature, ..)| *feature == RoadFeature::Signal) {
         Some(Act::RunRed)
-    } else if frame.sense == Sense::Yield || comes_out_so(reading, frame) {
+    } else if frame.sense == Sense::Yield || comes_out_so(reading, number, frame) {
         Some(Act::FailToYield)
     } else {
         None
     }
 }
 
-/// "A van left a lot without stopping", "turned out of an alley without first stopping": where nothing but the road calls for a stop.
-fn comes_out_so(reading: &Reading<'_>, frame: &Frame) -> bool {
-    let comes = |other: &Frame| {
-        let out = matches!(other.out_of, Some(Spot::Driveway | Spot::Stall | Spot::SideStreet));
-        other.who == frame.who && other.sentence == frame.sentence && other.happened() && out
+/// "A van left a lot and, without stopping, turned left", "turned out of an alley without first stopping": where nothing but the road calls for a
+/// stop; not "pulled out, struck it, and drove on without stopping".
+fn comes_out_so(reading: &Reading<'_>, number: usize, frame: &Frame) -> bool {
+    let out = |other: &&Frame| {
+        let spot = matches!(other.out_of, Some(Spot::Driveway | Spot::Stall | Spot::SideStreet));
+        other.happened() && (spot || other.act() == Some(Act::PullOut))
     };
-    frame.act() == Some(Act::Stop)
-        && frame.who.is_some_and(|who| who != SUBJECT)
-        && reading.story.frames.iter().any(comes)
+    let goes_on = |other: &&Frame| !out(other) && !matches!(other.act(), None | Some(Act::Turn | Act::Enter));
+    let before = reading.story.frames[..number].iter().rev().filter(|before| before.who == frame.who);
+    let own = || before.clone().take_while(|before| before.sentence == frame.sentence);
+    let others = frame.who.is_some_and(|who| who != SUBJECT) && frame.act() == Some(Act::Stop);
+    others && own().take_while(|before| !goes_on(before)).any(|before| out(&before))
 }
 
 /// "rolled back from the light, and failed to stop": it did not stop going backwards, and ran nothing.

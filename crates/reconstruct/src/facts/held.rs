@@ -118,8 +118,10 @@ pub(crate) fn facts(told: &Told, scenario: &Scenario, rollout: &Rollout) -> Vec<
         let stands_so = told.stands_so(kind == CheckKind::SvState, scenario, seen);
         let backs_first = told.backs_first.filter(|_| kind == CheckKind::CpState && !told.sv.phases.is_empty());
         let in_order = backs_first.is_none_or(|first| phases::back_in_order(first, ego_track, track, touch.time_s));
+        let rolls_out = kind == CheckKind::CpState && told.rolls_out();
         let shown = pushed
-            || state(side.state, track, seen, touch.time_s)
+            || !(rolls_out && stood)
+                && state(side.state, track, seen, touch.time_s)
                 && stands_so
                 && (stood || !side.stood_first)
                 && (slowed || side.slowed_from.is_none())
@@ -141,6 +143,9 @@ pub(crate) fn facts(told: &Told, scenario: &Scenario, rollout: &Rollout) -> Vec<
         if let Some(first) = backs_first {
             expected += if first == Striker::Cp { ", backed first" } else { ", backed after the ego" };
             observed += if in_order { ", so it did" } else { ", so it did not" };
+        }
+        if rolls_out {
+            expected += ", without a stop";
         }
         if side.phases.is_empty() {
             expected += before(side.stood_first, side.slowed_from.is_some(), side.gains);

@@ -93,8 +93,7 @@ pub(super) fn origin(told: &Told, ego: &ActorTrack, other: &ActorTrack, time_s: 
             let crosswise = (30.0..150.0).contains(&facing.abs());
             let out = crosswise || !matches!(told.origin, Origin::Stall { .. } | Origin::Driveway { .. });
             let from_there = !(told.stood_beside() || told.backs_out())
-                // Told not to have stopped, it has not stood there.
-                || stands_then != told.cp.comes_out_rolling
+                || stands_then
                     && left.abs() > OVER_M
                     && out
                     && (!told.comes_round || ahead < 0.0 || stands && behind_met);

@@ -126,9 +126,14 @@ pub(crate) fn slows(contact_s: f64, side: &Side) -> Pace {
     let by_mps = from_mps - side.speed_mps;
     let braking_s = (by_mps / rate_mps2 * 10.0).ceil() / 10.0;
     let brake = Deed::Speed { to_mps: side.speed_mps, rate_mps2: by_mps / braking_s };
-    let driven_m = from_mps * (contact_s - braking_s) + 0.5 * (from_mps + side.speed_mps) * braking_s;
-    Pace { speed_mps: from_mps, acts: vec![when(contact_s - braking_s, brake)], driven_m }
+    let on_s = if side.slowed_early { GOES_ON_S } else { 0.0 };
+    let brakes_s = contact_s - on_s - braking_s;
+    let driven_m = from_mps * brakes_s + 0.5 * (from_mps + side.speed_mps) * braking_s + side.speed_mps * on_s;
+    Pace { speed_mps: from_mps, acts: vec![when(brakes_s, brake)], driven_m }
 }
+
+/// Who slowed, and then went on slowly, has done so for so long at the contact. [s]
+const GOES_ON_S: f64 = 2.5;
 
 /// It comes along as fast as the ego does, slows when that does, and goes on slowly.
 pub(crate) fn slows_abreast(contact_s: f64, speed_mps: f64, ego: &Pace) -> Pace {

@@ -29,7 +29,8 @@ pub(super) fn partner_paces(told: &Told, staging: &Staging) -> (Option<Lead>, Pa
     let (cp, contact_s) = (&told.cp, told.contact_s);
     let (ego_lead, ego) = ego_paces(told, &staging.ground, staging.sv_s_m);
     let ego_m = ego.driven_m + ego_lead.as_ref().map_or(0.0, Lead::driven_m);
-    let ego_backs_s = ego_lead.as_ref().and_then(|lead| lead.backs_s);
+    let backs_last = told.sv.state == ContactState::Reversing;
+    let ego_backs_s = ego_lead.as_ref().and_then(|lead| lead.backs_s).or(backs_last.then(|| first_time(&ego.acts)));
     let ego_moves_s = ego_lead.as_ref().and_then(Lead::sets_off_s).unwrap_or_else(|| first_time(&ego.acts));
     let ego_backs_s = ego_backs_s.filter(|_| told.backs_first == Some(Striker::Cp));
     let before_s = if told.backs_early { Some(ego_moves_s) } else { ego_backs_s };
@@ -130,17 +131,14 @@ fn partner_pace(told: &Told, staging: &Staging, (ego, ego_m, before_s): (&Pace, 
             .unwrap_or(usual)
         }
         // Who comes from the kerb or out of a stall stood there.
-        ContactState::Moving if told.stood_beside() || enters && from_stand(told.origin) => {
+        ContactState::Moving if told.stood_beside() || enters && from_stand(told.origin) && !told.rolls_out() => {
             let way_m = match told.origin {
                 Origin::Driveway { .. } => beside::out_m(told, staging).max(PULL_OUT_M),
                 _ => PULL_OUT_M,
             };
-            // Told not to have stopped before it came out, it rolled.
-            let from_mps = if cp.comes_out_rolling { ROLLS_OUT_MPS.min(cp.speed_mps) } else { 0.0 };
-            let moving_s = (2.0 * way_m / (from_mps + cp.speed_mps) * 10.0).round() / 10.0;
-            let go = Deed::Speed { to_mps: cp.speed_mps, rate_mps2: (cp.speed_mps - from_mps).max(0.05) / moving_s };
-            let driven_m = 0.5 * (from_mps + cp.speed_mps) * moving_s + from_mps * (contact_s - moving_s);
-            Pace { speed_mps: from_mps, acts: vec![when(contact_s - moving_s, go)], driven_m }
+            let moving_s = (2.0 * way_m / cp.speed_mps * 10.0).round() / 10.0;
+            let go = Deed::Speed { to_mps: cp.speed_mps, rate_mps2: cp.speed_mps / moving_s };
+            Pace { speed_mps: 0.0, acts: vec![when(contact_s - moving_s, go)], driven_m: 0.5 * cp.speed_mps * moving_s }
         }
         // Who stood and turned has room for its turn.
         ContactState::Moving if cp.stood_first && matches!(cp.turning, Turning::Left | Turning::Right) => {
@@ -176,9 +174,6 @@ const SWINGS_BACK_M: f64 = 6.0;
 
 /// Nobody backs on a tighter circle. [m]
 const LEAST_BACK_M: f64 = 5.0;
-
-/// How fast somebody rolls along a lot or a driveway who comes out of it without a stop. [m/s]
-const ROLLS_OUT_MPS: f64 = 2.0;
 
 fn from_stand(origin: Origin) -> bool {
     !matches!(origin, Origin::Cross { .. } | Origin::Behind | Origin::Opposite)

@@ -12,7 +12,8 @@ use crate::told::lies::Lies;
 use crate::told::side::Turning;
 use crate::told::times::CONTACT_S;
 use recrash_model::account::{
-    Account, Act, ContactState, CrashType, FirstContact, KindGroup, LeftRight, Origin, PlaceKind, Source, Untold, told,
+    Account, Act, ContactState, CrashType, FirstContact, KindGroup, LeftRight, Origin, PlaceKind, Source, Striker,
+    Untold, told,
 };
 
 impl Told {
@@ -159,7 +160,8 @@ impl Told {
             gives_way_to_merge: false,
             backs_late,
             backs_early,
-            backs_first: backs_first(&account.sv, partner).filter(|_| !sv_reverses),
+            // Of two that back the partner can have begun to before.
+            backs_first: backs_first(&account.sv, partner).filter(|first| !sv_reverses || *first == Striker::Cp),
             queued: false,
             close: true,
             plainly: false,

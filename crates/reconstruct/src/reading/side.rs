@@ -1,7 +1,7 @@
 //! What is told of one side of the crash.
 
 use crate::reading::turns::{last_way, leaves_line, turned_before, turned_before_its_stop, went_on_straight};
-use crate::reading::{acts, phases, sizes, things};
+use crate::reading::{acts, phases, sizes, things, words};
 use crate::told::side::{Side, Slowed, Turning};
 use crate::told::sizes::size_of;
 use recrash_model::account::{
@@ -116,8 +116,8 @@ pub(super) fn side(party: &Party, kind: Option<Kind>, assumed: &mut Vec<String>,
         goes_round: false,
         returns: returns(party),
         gains,
-        comes_out_rolling: does_not_stop(party),
         reacts: false,
+        slowed_early: slowed_early(party),
         stopped_aside,
         turns_later: false,
         turned: turning != Turning::No
@@ -134,6 +134,7 @@ pub(super) fn side(party: &Party, kind: Option<Kind>, assumed: &mut Vec<String>,
         stood_first,
         came_to_park,
         came_there: came_there(party),
+        rolls_out: rolls_out(party),
         stands_from_start: told(&party.standing) == Some(Standing::FromTheStart),
         phases,
         acts,
@@ -184,6 +185,18 @@ fn leaves_space(party: &Party) -> bool {
     first.is_some_and(|fact| fact.act == Act::PullOut && !fact.begun && !of_lot(words(fact)))
 }
 
+/// Whether somebody that came out of a lot or a driveway is told to have come along there, and not to have stood; or not to have stopped before
+/// the road.
+fn rolls_out(party: &Party) -> bool {
+    let before = || party.acts.iter().filter(|fact| !fact.after_contact && !fact.begun);
+    let out = before().find(|fact| fact.act == Act::PullOut).map(|fact| fact.step);
+    let stood = before().any(|fact| matches!(fact.act, Act::Stop | Act::Hold | Act::SetOff | Act::Park));
+    let came = before().any(|fact| fact.act == Act::Follow && Some(fact.step) < out);
+    let no_stop = |fact: &ActFact| fact.act == Act::FailToYield && words::text(&fact.source).contains("stop");
+    let ran = before().any(|fact| fact.act == Act::RunStop || no_stop(fact));
+    out.is_some() && !stood && (came || ran)
+}
+
 /// Whether the first that is told of somebody who is parked is how it came there.
 fn came_there(party: &Party) -> bool {
     let stands = |fact: &&ActFact| {
@@ -227,6 +240,17 @@ fn slowed_after_its_stand(party: &Party) -> bool {
     before().filter(|fact| matches!(fact.act, Act::Slow | Act::Stop)).map(|fact| fact.step).max() > stood
 }
 
+/// Whether somebody who slowed is told to have gone on then, forward or slowly: "slowed behind it, and proceeded forward at a low speed".
+fn slowed_early(party: &Party) -> bool {
+    let before = || party.acts.iter().filter(|fact| !fact.after_contact && !fact.begun);
+    let slowed = before().filter(|fact| matches!(fact.act, Act::Slow | Act::Stop)).map(|fact| fact.step).max();
+    let on = |fact: &ActFact| {
+        let forward = || words::text(&fact.source).contains("forward");
+        fact.act == Act::Follow && (fact.manner == Some(Manner::Slow) || forward())
+    };
+    slowed.is_some() && before().any(|fact| Some(fact.step) > slowed && on(fact))
+}
+
 /// Whether the last that is told of somebody is that it reversed, and parked.
 fn parks_backing(party: &Party) -> bool {
     let acts: Vec<Act> = party.acts.iter().filter(|fact| !fact.after_contact).map(|fact| fact.act).collect();
@@ -239,12 +263,6 @@ fn went_on(party: &Party) -> bool {
     let backed = before().filter(|fact| fact.act == Act::Reverse).map(|fact| fact.step).max();
     let goes = |act: Act| matches!(act, Act::Enter | Act::Cross | Act::Pass);
     backed.is_some_and(|backed| before().any(|fact| fact.step > backed && goes(fact.act)))
-}
-
-/// Whether words tell that somebody did not stop where it had to give way.
-fn does_not_stop(party: &Party) -> bool {
-    let stop = |source: &Source| matches!(source, Source::Words { text, .. } if text.to_lowercase().contains("stop"));
-    party.acts.iter().any(|fact| fact.act == Act::FailToYield && !fact.after_contact && stop(&fact.source))
 }
 
 /// Whether the last change of speed before the contact that is told is a gain.

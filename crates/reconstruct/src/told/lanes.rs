@@ -17,6 +17,7 @@ impl Told {
             self.origin,
             Origin::Behind | Origin::Ahead | Origin::Beside { .. } | Origin::Opposite | Origin::Cross { .. }
         );
+        let along = along || self.rolls_out();
         let drives = !is_on_foot(self.cp.kind) && !matches!(self.cp.kind, PartnerKind::FixedObject);
         along && drives && self.thing.is_none() && self.cp.state != ContactState::Parked && !self.comes_across()
     }

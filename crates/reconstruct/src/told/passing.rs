@@ -119,6 +119,7 @@ impl Told {
             && self.origin == Origin::Behind
             && self.cp.state == ContactState::Moving
             && !self.cp.stood_first
+            && self.cp.lane.and_then(strip_of).is_none()
             && !self.is_thrown()
     }
 
@@ -144,8 +145,10 @@ impl Told {
 
     /// Whether an oncoming partner pulled out from the kerb of its own side.
     pub(crate) fn pulls_out_opposite(&self) -> bool {
-        let pulls_out = self.cp.movement == Some(Movement::EnteringTraffic) && self.cp.state == ContactState::Moving;
-        self.origin == Origin::Opposite && pulls_out && self.cp.turning == Turning::No && self.thing.is_none()
+        let stood = self.layout.cp.at_kerb && self.cp.stood_first;
+        let pulls_out = self.cp.movement == Some(Movement::EnteringTraffic) || stood;
+        let moves = self.cp.state == ContactState::Moving;
+        self.origin == Origin::Opposite && pulls_out && moves && self.cp.turning == Turning::No && self.thing.is_none()
     }
 
     /// Whether the partner came along behind the ego on the opposite side, and changed from there into a lane of its own direction.
@@ -196,7 +199,14 @@ impl Told {
     /// Whether the partner stood beside the lanes before it came: at the kerb, in a stall or in a driveway.
     pub(crate) fn stood_beside(&self) -> bool {
         let beside = matches!(self.origin, Origin::Parked { .. } | Origin::Stall { .. } | Origin::Driveway { .. });
-        beside && self.cp.state == ContactState::Moving && !is_on_foot(self.cp.kind) && self.thing.is_none()
+        let stood = beside && !self.rolls_out();
+        stood && self.cp.state == ContactState::Moving && !is_on_foot(self.cp.kind) && self.thing.is_none()
+    }
+
+    /// Whether the partner came along out of a lot or a driveway, without a stop before the road.
+    pub(crate) const fn rolls_out(&self) -> bool {
+        let there = matches!(self.origin, Origin::Driveway { .. }) && matches!(self.cp.state, ContactState::Moving);
+        there && self.cp.rolls_out && !self.comes_round
     }
 
     /// Whether the partner stood beside the ego's way, or across from it, and passed it then.

@@ -43,14 +43,16 @@ pub(crate) struct Side {
     pub(crate) stands_from_start: bool,
     /// It is parked, and is told to have come there.
     pub(crate) came_to_park: bool,
+    /// It came along out of a lot or a driveway, and did not stop before the road.
+    pub(crate) rolls_out: bool,
     /// It came to a stop before the last that it did.
     pub(crate) came_there: bool,
     /// Speed on the way there, of who is told to have slowed before the contact and still moved. [m/s]
     pub(crate) slowed_from: Option<Slowed>,
+    /// It had slowed, and went on slowly since.
+    pub(crate) slowed_early: bool,
     /// It brakes, or swerves, for the turn that the other has begun: late and hard.
     pub(crate) reacts: bool,
-    /// It is told to have come out onto the road without a stop.
-    pub(crate) comes_out_rolling: bool,
     /// It is told to have gained speed while it drove, and to be under way at the contact.
     pub(crate) gains: bool,
     /// What it did last, ended by what it does at the contact, where that is more than the state says: of the ego.

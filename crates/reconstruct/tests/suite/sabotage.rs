@@ -441,6 +441,10 @@ fn never_at_the_kerb(account: &Account, draft: &mut ScenarioDraft) -> bool {
     let kind = account.partner.as_ref().and_then(|partner| told(&partner.kind));
     let drives = stood && kind.is_some_and(Kind::is_vehicle) && partner_state(account) == Some(ContactState::Moving);
     let Some((plan, start, contact)) = approach(draft).filter(|_| drives) else { return false };
+    // Who is told not to have stopped has not stood.
+    if plan.speed_mps > 0.0 {
+        return false;
+    }
     // It comes along without a stop, and is there at the same time.
     let length_m = math::hypot(contact[0] - start[0], contact[1] - start[1]);
     plan.speed_mps = (length_m / 9.0).max(0.3);
