@@ -13,11 +13,12 @@ use recrash_model::zones::ContactZone;
 /// What is so far inside the ego's outline is under it. [m]
 const UNDER_M: f64 = 0.3;
 
-/// An animal that the ego drives over comes under it within this way. [m]
+/// What moves, and the ego drives over, comes under it within this way. [m]
 const ONTO_M: f64 = 1.5;
 
-/// Whether what lies on the road comes under the ego, clear of its edges, once it is touched; of an animal where it was then, as far as
-/// the ego's front comes over it at once: whoever is touched is pushed on, as nothing here has a height.
+/// Whether what lies on the road comes under the ego, clear of its edges, once it is touched; of an animal, or of what
+/// fell off somebody, where it was then, as far as the ego's front comes over it at once: whoever is touched is pushed on, as nothing here has a
+/// height.
 pub(super) fn goes_under(
     told: &Told,
     ego: &ActorTrack,
@@ -26,7 +27,7 @@ pub(super) fn goes_under(
     since: usize,
 ) -> bool {
     let body = |pose: Pose| OrientedBox::new(pose, ego.length_m - 2.0 * UNDER_M, ego.width_m - 2.0 * UNDER_M);
-    if told.cp.kind == PartnerKind::Animal {
+    if told.cp.kind == PartnerKind::Animal || told.dropped.is_some() {
         let met = &ego.states[since.min(ego.states.len() - 1)];
         let on = Vec2::from_heading(met.heading) * (met.speed().signum() * ONTO_M);
         let moves = met.velocity().length() > STANDS_MPS;

@@ -164,7 +164,10 @@ const FROM_WITHIN: usize = 16;
 /// Which of the others a thing fell off, or came out from under, ahead of an ego that follows it: one whose place is told with that, or who
 /// is named right behind it. What had fallen before lies there.
 pub(super) fn dropped_by(account: &Account, partner: &Party, sv: &Side, place: PlaceKind) -> Option<usize> {
-    let drops = matches!(told(&partner.kind)?, Kind::Debris | Kind::LooseWheel | Kind::Cargo | Kind::Object);
+    let drops = matches!(
+        told(&partner.kind)?,
+        Kind::Debris | Kind::LooseWheel | Kind::Cargo | Kind::Object | Kind::Cart | Kind::TreeBranch | Kind::Cone
+    );
     let along = sv.state == ContactState::Moving && sv.turning == Turning::No && sv.aside.is_none();
     let slow = sv.impact_mps.map_or(place != PlaceKind::Highway, |mps| mps <= DROPPED_MOST_MPS);
     if !drops || !along || !slow || told(&account.came_from) != Some(Origin::Ahead) {

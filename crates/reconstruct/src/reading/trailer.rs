@@ -8,7 +8,7 @@ use recrash_model::account::{ContactState, Origin, Party, Source, told};
 /// touched.
 pub(super) fn touches(partner: &Party) -> bool {
     let words = |source: &Source| match source {
-        Source::Words { text, .. } => text.to_lowercase(),
+        Source::Words { text, .. } => without_whole(text.to_lowercase()),
         _ => String::new(),
     };
     let named = partner.kind.as_ref().is_some_and(|kind| {
@@ -18,6 +18,14 @@ pub(super) fn touches(partner: &Party) -> bool {
     let part = |text: String| ["the ", "its "].iter().any(|word| text.starts_with(word)) && text.ends_with("trailer");
     let touched = partner.zones.iter().any(|zone| part(words(&zone.source)));
     (named || touched) && told(&partner.kind).and_then(Rig::of).is_some()
+}
+
+/// Names of a tractor with its trailer, as one.
+const WHOLE: [&str; 5] = ["tractor trailer", "tractor-trailer", "semi trailer", "semi-trailer", "semitrailer"];
+
+/// Words without the names for the whole: "the mirror of the tractor trailer" is not on its trailer.
+fn without_whole(text: String) -> String {
+    WHOLE.iter().fold(text, |text, name| text.replace(name, "truck"))
 }
 
 /// What is drawn of somebody who comes by with a trailer that touches.
