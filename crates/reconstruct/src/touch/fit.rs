@@ -84,6 +84,9 @@ impl Told {
         };
         // Behind an ego that has turned it goes straight on again.
         let over = self.sv.turned || self.sv.state.stands();
+        // Nor has who stood behind it another way at once.
+        let stood = self.cp.stood_first || self.cp.state == ContactState::SettingOff;
+        let over = over || stood && self.crash_type == CrashType::FrontToRear;
         let same = self.cp.movement.is_none_or(|movement| movement == turns || over && movement == Movement::Straight);
         let moves = matches!(self.cp.state, ContactState::Moving | ContactState::SettingOff);
         same && moves && self.origin == Origin::Behind && self.thing.is_none() && self.rig.is_none()
