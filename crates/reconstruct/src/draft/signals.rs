@@ -109,7 +109,15 @@ pub(crate) fn devices(told: &Told, ground: &Ground, ego: &ActorPlan, actors: &[A
         let crossed = actors.iter().any(|actor| actor.id == Role::Crosser.id());
         let on_red = is_ego && crossed && said.state.is_none() && said.obeyed.is_none();
         let state = if on_red && told.sv.turning == Turning::Right { Some(SignalState::Red) } else { state };
-        let latest_s = before_s - GREEN_AT_LEAST_S;
+        // Before who stood ahead backs, which is told behind it.
+        let backs = |actor: &&Actor| {
+            told.origin == Origin::Ahead
+                && told.cp.state == ContactState::Reversing
+                && actor.id == "cp"
+                && first_s.is_none()
+        };
+        let backs_s = actors.iter().find(backs).and_then(|actor| goes_s(&actor.plan));
+        let latest_s = backs_s.map_or(before_s, |backs_s| backs_s.min(before_s)) - GREEN_AT_LEAST_S;
         let changed_s = halt.filter(|_| state == Some(SignalState::TurnedGreen)).map_or(changed_s, |halt| {
             // It stood at red first.
             changed_s.max((halt.stands_s + STANDS_AT_RED_S).min(latest_s))

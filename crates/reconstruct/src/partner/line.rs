@@ -115,8 +115,10 @@ fn start(told: &Told, staging: &Staging, back_m: f64, aside: bool, motion: impl 
     let line_y_m = beside::line_y_m(told, staging).filter(|_| aside && !turns);
     let pulls_out = aside && !turns && told.passes_from_behind();
     if pulls_out {
-        // Out of the ego's lane.
-        position.y = if told.comes_along_kerb() { 0.0 } else { staging.sv.position.y };
+        // Out of the ego's lane, which that may have left.
+        let left = told.sv_aside().is_some();
+        let own_y_m = if left { staging.ground.sv_pose(0.0).position.y } else { staging.sv.position.y };
+        position.y = if told.comes_along_kerb() { 0.0 } else { own_y_m };
     } else if let Some(line_y_m) = line_y_m {
         position.y = line_y_m;
     } else if turn.abs() > 0.01 {

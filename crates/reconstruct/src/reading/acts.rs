@@ -56,7 +56,12 @@ pub(super) fn told(party: &Party, state: ContactState) -> Vec<Doing> {
                 Doing { act: Act::SetOff, side: None, begun: false, over: false, implied: true, step, after_other };
             list.push(set_off);
         }
-        standing = stands(fact.act) || standing && waits;
+        // Who is told to have set off from there went on so.
+        let goes = standing && fact.act == Act::Follow && state == ContactState::SettingOff;
+        if goes {
+            list.push(Doing { act: Act::SetOff, side: None, begun: false, over: false, step, after_other });
+        }
+        standing = stands(fact.act) || standing && waits && !goes;
         if !skipped {
             let (act, side, begun) = (fact.act, fact.side, fact.begun);
             list.push(Doing { act, side, begun, over, implied: false, step, after_other });

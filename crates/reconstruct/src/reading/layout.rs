@@ -2,6 +2,7 @@
 
 use crate::reading::words::{span, text};
 use crate::told::layout::{Counted, Layout, Standing};
+use crate::told::zones::side_of;
 use recrash_model::account::{
     Account, Act, ActFact, Fact, LaneWord, LeftRight, Origin, Party, RoadFeature, Source, told,
 };
@@ -58,7 +59,16 @@ fn goes_to_turn_lane(account: &Account, partner: &Party) -> bool {
 fn goes_out_left(account: &Account, partner: &Party) -> bool {
     let out = |fact: &ActFact| fact.act == Act::LaneChange && fact.side == Some(LeftRight::Left) && !fact.after_contact;
     let left = told(&account.sv.lane) == Some(LaneWord::Left) && told(&partner.lane).is_none();
-    left && told(&account.came_from) == Some(Origin::Behind) && partner.acts.iter().any(out)
+    left && told(&account.came_from) == Some(Origin::Behind)
+        && partner.acts.iter().any(out)
+        && !comes_into_its_lane(account)
+}
+
+/// Whether nothing tells that a partner that changes lanes behind the ego was in the ego's: neither words for its place, nor a touched side of
+/// the ego's, past which it would go.
+fn comes_into_its_lane(account: &Account) -> bool {
+    let behind = account.came_from.as_ref().is_some_and(|fact| text(&fact.source).contains("behind"));
+    !behind && side_of(&account.sv.zone_values()).is_none()
 }
 
 /// Whether the partner changes lanes to its right behind an ego in the right lane, or out of the lane on the right of that: it is then the
@@ -70,7 +80,7 @@ fn goes_out_right(account: &Account, partner: &Party) -> bool {
     let stays = told(&partner.lane).is_none_or(|lane| lane == LaneWord::Right);
     let changes = matches!(told(&partner.movement), Some(Movement::ChangingLanes | Movement::Merging));
     match told(&account.came_from) {
-        Some(Origin::Behind) => right && stays && partner.acts.iter().any(out),
+        Some(Origin::Behind) => right && stays && partner.acts.iter().any(out) && !comes_into_its_lane(account),
         Some(Origin::Beside { side: LeftRight::Right }) => right && told(&partner.lane).is_none() && changes,
         _ => false,
     }

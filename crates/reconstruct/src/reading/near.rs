@@ -1,5 +1,6 @@
 //! What is told of others who have no part in what the ego does.
 
+use crate::reading::story::is_parked;
 use crate::reading::words::text;
 use crate::told::near::{Does, First, Near};
 use recrash_model::account::{Act, ActFact, Kind, KindGroup, LeftRight, Origin, Other};
@@ -13,6 +14,25 @@ impl Does {
     /// Whether it may be a part of a way with another deed.
     const fn is_of_one_way(self) -> bool {
         matches!(self, Self::Turns(_) | Self::PullsOut | Self::GoesAside(_) | Self::PullsOver(_) | Self::Crosses)
+    }
+
+    /// To which side it goes, where told.
+    const fn side(self) -> Option<LeftRight> {
+        match self {
+            Self::Turns(side) | Self::Changes(side) | Self::GoesAside(side) | Self::PullsOver(side) => side,
+            _ => None,
+        }
+    }
+
+    /// Whether another is the same, told again: "changed lanes to the right", and "completed changing lanes".
+    fn is_same(self, other: Self) -> bool {
+        let alike = std::mem::discriminant(&self) == std::mem::discriminant(&other);
+        alike && (self == other || self.side().is_none() || other.side().is_none())
+    }
+
+    /// The one of two that are the same whose side is told.
+    const fn with_side_of(self, other: Self) -> Self {
+        if self.side().is_some() { self } else { other }
     }
 
     /// How far it takes somebody, of two deeds on one way.
@@ -94,13 +114,21 @@ impl Near {
                 None
             }
         });
-        let before: Vec<&ActFact> = other.acts.iter().filter(|fact| is_seen(fact)).collect();
+        // Who is parked and reaches into a lane stands so.
+        let parked = is_parked(other);
+        let reaches = |fact: &ActFact| parked && fact.act == Act::Drift;
+        let before: Vec<&ActFact> = other.acts.iter().filter(|fact| is_seen(fact) && !reaches(fact)).collect();
         let on_wheels = !matches!(other.kind.value.group(), KindGroup::OnFoot | KindGroup::Animal);
         let crosses = on_wheels && before.iter().any(|fact| fact.act == Act::Cross);
         let across = place.is_none() && (crosses || said(&["cross traffic", "cross-traffic", "crossing traffic"]));
         let all: Vec<Does> = before.iter().map(|fact| Does::of(fact, place, on_wheels)).collect::<Option<_>>()?;
-        let mut deeds: Vec<Does> = all.iter().copied().filter(|does| does.is_deed()).collect();
-        deeds.dedup();
+        let mut deeds: Vec<Does> = Vec::new();
+        for does in all.iter().copied().filter(|does| does.is_deed()) {
+            match deeds.last_mut().filter(|last| last.is_same(does)) {
+                Some(last) => *last = last.with_side_of(does),
+                None => deeds.push(does),
+            }
+        }
         let (does, also) = match deeds.as_slice() {
             [] => (all.last().copied().unwrap_or(Does::Untold), None),
             [one] => (*one, None),

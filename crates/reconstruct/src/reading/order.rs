@@ -34,7 +34,7 @@ fn stops_for_who_backs(sv: &Party, partner: &Party) -> bool {
     let backs = partner.acts.iter().filter(before).find(|fact| fact.act == Act::Reverse).and_then(words);
     let stops = sv.acts.iter().filter(before).find(|fact| matches!(fact.act, Act::Stop | Act::Slow)).and_then(words);
     let (Some((backs, _, text)), Some((_, stops, _))) = (backs, stops) else { return false };
-    let goes_on = text.starts_with("reversing") || text.starts_with("backing");
+    let goes_on = ["reversing", "backing", "rolling", "drifting"].iter().any(|verb| text.starts_with(verb));
     let own = steps(sv, |act| act == Act::Reverse);
     goes_on && own.is_empty() && (0..SAME_BREATH).contains(&(backs as i64 - stops as i64))
 }

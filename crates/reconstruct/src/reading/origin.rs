@@ -37,6 +37,11 @@ pub(super) fn comes_over(origin: Origin, partner: &Party, movement: Option<Movem
     let told = match movement {
         Some(Movement::CrossingIntoOpposingLane | Movement::LaneDeparture | Movement::ChangingLanes) => true,
         Some(Movement::Straight | Movement::Passing) | None => left(Act::Drift) || left(Act::Swerve),
+        // Against the flow at last, and not all the way: it went over to its left.
+        Some(Movement::WrongWay) => partner.acts.iter().any(|fact| {
+            let over = matches!(fact.act, Act::LaneChange | Act::Drift | Act::Swerve) && !fact.begun;
+            over && !fact.after_contact && fact.side != Some(LeftRight::Right)
+        }),
         _ => false,
     };
     origin == Origin::Opposite && told

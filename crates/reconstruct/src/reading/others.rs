@@ -112,7 +112,13 @@ pub(super) fn wanted(told: &Told, account: &Account) -> Vec<Extra> {
         let first = drives_on == Some(true);
         let again = role == Role::Lead && story.stands_again(other);
         match list.iter_mut().find(|extra| extra.role == role) {
-            Some(known) if kind.partner_kind().is_none_or(|kind| known.kind.partner_kind() == Some(kind)) => {
+            Some(known)
+                if kind.partner_kind().is_none_or(|kind| known.kind.partner_kind() == Some(kind))
+                    || is_of_queue(known, other) =>
+            {
+                if known.kind.partner_kind().is_none() {
+                    known.kind = kind;
+                }
                 known.of.push(number);
                 known.goes |= goes;
                 known.parked |= parked;
@@ -152,6 +158,12 @@ pub(super) fn wanted(told: &Told, account: &Account) -> Vec<Extra> {
     }
     for_reasons(&story, told, &mut list);
     list
+}
+
+/// Whether somebody who is told ahead is the nearest of traffic that stands there, which may be of any kind.
+fn is_of_queue(known: &Extra, other: &Other) -> bool {
+    let ahead = other.place.as_ref().is_some_and(|fact| fact.value == Origin::Ahead);
+    known.role == Role::Lead && known.several && known.kind.partner_kind().is_none() && ahead && !other.several
 }
 
 /// The same with those of whom only a reason to stand tells.

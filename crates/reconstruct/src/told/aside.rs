@@ -54,7 +54,9 @@ impl Told {
         };
         // Who makes room for another before it stops does so away from it.
         let makes_room = matches!(stopped, Some(Act::Drift | Act::Swerve)) && self.striker == Some(Striker::Cp);
-        let towards = self.sv.aside.or(match self.origin {
+        // Who stopped on its way to another lane, and is passed by who was behind it, had gone away from that one's side.
+        let passed = self.cp.passes_on().filter(|_| stopped == Some(Act::LaneChange) && self.origin == Origin::Behind);
+        let towards = self.sv.aside.or(passed.map(LeftRight::other)).or(match self.origin {
             // For who has turned into the other direction it makes room at the kerb.
             Origin::Cross { .. } if makes_room && self.comes_against() => Some(right),
             Origin::Beside { side } | Origin::Cross { side } => Some(if makes_room { side.other() } else { side }),

@@ -9,6 +9,7 @@ mod between;
 mod common;
 mod courses;
 mod drives;
+mod earlier;
 mod in_step;
 mod kerb;
 mod lanes;
