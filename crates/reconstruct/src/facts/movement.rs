@@ -271,7 +271,8 @@ pub(super) fn check(side: &Side, way: &Way<'_>) -> Option<(String, CheckResult, 
             }
             let (words, degrees) = bent();
             let slow = way.until()[way.until().len() - 1].velocity().length() < PARKS_MPS;
-            let turns = way.reversed() || beside_m.abs() >= LEFT_LINE_M || degrees >= BENDS_DEG;
+            let swings = side.slants.is_none() || way.slant_deg() >= BENDS_DEG;
+            let turns = way.reversed() && swings || beside_m.abs() >= LEFT_LINE_M || degrees >= BENDS_DEG;
             let there = !way.parks_at_kerb || way.is_off_lanes(&way.until()[way.until().len() - 1]);
             (slow && turns && there, format!("{words}, {:.1} m aside", beside_m.abs()))
         }

@@ -7,8 +7,8 @@ use crate::told::doing::Doing;
 use crate::told::side::{Side, Slant, Turning};
 use crate::told::zones::side_of;
 use recrash_model::account::{
-    Account, Act, Act as Done, ActFact, ContactState, CrashType, LaneWord, LeftRight, Origin, Party, Source, Standing,
-    Striker, told,
+    Account, Act, Act as Done, ActFact, ContactState, CrashType, LaneWord, LeftRight, Origin, Party, PlaceKind, Source,
+    Standing, Striker, told,
 };
 use recrash_model::template::Movement;
 
@@ -33,12 +33,16 @@ impl Told {
                 partner.acts.iter().filter(before).find(|fact| fact.act == Act::Reverse).map(|fact| fact.step);
             let swing = |fact: &&ActFact| matches!(fact.act, Act::Turn | Act::Drift | Act::Swerve);
             let last = partner.acts.iter().filter(before).rfind(swing);
-            self.cp.slants = last.and_then(|fact| match Some(fact.step) >= reversed {
+            // Who backs into a stall of a lot swings round for it.
+            let lot = matches!(self.place, PlaceKind::ParkingLot | PlaceKind::Garage);
+            let parks = (lot && partner.did(Act::Park)).then_some(Slant::Swung);
+            let swings = last.and_then(|fact| match Some(fact.step) >= reversed {
                 true => Some(Slant::Swung),
                 false => {
                     (fact.act == Act::Turn).then_some(Slant::Stood { side: fact.side, oncoming: faces(sv, partner) })
                 }
             });
+            self.cp.slants = swings.or(parks);
         }
         // Who reverses out of the crossing road came along the ego's, turned into that, and stood there.
         if let (ContactState::Reversing, Origin::Cross { side }) = (self.cp.state, self.origin)
