@@ -30,6 +30,7 @@ pub(super) fn comes_as_told(told: &Told, ego: &ActorTrack, [partner, other]: [&A
         None => true,
         Some(Thrower::Beside(side)) => on_side(side),
         Some(Thrower::Ahead) => is_ahead && turned < CROSSES_RAD.0,
+        Some(Thrower::Opposite) => turned >= CROSSES_RAD.1,
         Some(Thrower::Cross(side)) => on_side(side) && (CROSSES_RAD.0..CROSSES_RAD.1).contains(&turned),
     }
 }

@@ -55,6 +55,9 @@ pub(crate) fn partner(told: &Told, staging: &Staging) -> (Vec<Actor>, Vec<Object
     }
     let toucher = || match told.thrower {
         _ if told.pusher_stands => thrown::grazed(told, staging),
+        Some(Thrower::Cross(_) | Thrower::Opposite) => {
+            thrown::across(told, staging).unwrap_or_else(|| thrown::nudger(told, staging, own))
+        }
         Some(Thrower::Ahead) => thrown::ahead(told, staging).unwrap_or_else(|| thrown::nudger(told, staging, own)),
         _ => thrown::nudger(told, staging, own),
     };

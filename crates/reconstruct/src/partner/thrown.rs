@@ -217,6 +217,46 @@ pub(super) fn ahead(told: &Told, staging: &Staging) -> Option<Actor> {
     Some(Actor { id: "pusher".to_owned(), kind, size, mass_kg: None, parts: Vec::new(), plan })
 }
 
+/// Who comes along a road of its own, as fast as this, runs into the partner so long before the contact; it is looked for from so far away.
+/// [m/s, s, m]
+const ACROSS_MPS: f64 = 7.0;
+const ACROSS_S: f64 = 0.15;
+const ACROSS_FROM_M: f64 = 15.0;
+
+/// A zone at the front or the rear of somebody is so much of its length from its middle. [-]
+const ZONE_PART: f64 = 0.3;
+
+/// Who comes straight along the crossing road, or from the opposite direction, and runs into the told part of the partner right before the
+/// contact; nothing where nobody tells from where it comes.
+pub(super) fn across(told: &Told, staging: &Staging) -> Option<Actor> {
+    let degrees: f64 = match told.thrower? {
+        Thrower::Cross(LeftRight::Left) => -90.0,
+        Thrower::Cross(LeftRight::Right) => 90.0,
+        Thrower::Opposite => 180.0,
+        Thrower::Beside(_) | Thrower::Ahead => return None,
+    };
+    let (kind, size, length_m) = pusher(told);
+    let width_m = size.map_or(VehicleSpec::of(kind).width_m, |size| size.width_m);
+    let (partner_m, wide_m) = size_of(&told.cp);
+    let (way, along) = (Vec2::from_heading(degrees.to_radians()), Vec2::from_heading(staging.cp.heading));
+    let before = Pose { position: staging.cp.position - along * (told.cp.speed_mps * ACROSS_S), ..staging.cp };
+    let partner = OrientedBox::new(before, partner_m, wide_m);
+    let part = match told.touch.and_then(|touch| touch.of_partner) {
+        Some(zone) if zone.is_front() => ZONE_PART,
+        Some(zone) if zone.is_rear() => -ZONE_PART,
+        _ => 0.0,
+    };
+    let aims = before.position + along * (part * partner_m);
+    let pose = |short_m: f64| Pose { position: aims - way * short_m, heading: degrees.to_radians() };
+    let steps = (0..(ACROSS_FROM_M / STEP_M) as usize).map(|step| ACROSS_FROM_M - STEP_M * step as f64);
+    let met = steps.map(pose).find(|pose| OrientedBox::new(*pose, length_m, width_m).overlaps(&partner))?;
+    let start = back(met, ACROSS_MPS * (told.contact_s - ACROSS_S));
+    let to = at(Pose { position: met.position + way * beyond_m(ACROSS_MPS), ..met });
+    let course = vec![Leg::Curve { to, reverse: false }];
+    let plan = ActorPlan { speed_mps: ACROSS_MPS, course, ..ActorPlan::standing(at(start)) };
+    Some(Actor { id: "pusher".to_owned(), kind, size, mass_kg: None, parts: Vec::new(), plan })
+}
+
 /// Who stands at the kerb, and whom the partner grazes on its way, on the side away from the ego.
 pub(super) fn grazed(told: &Told, staging: &Staging) -> Actor {
     let (kind, size, length_m) = pusher(told);

@@ -245,6 +245,7 @@ pub(super) fn thrower(account: &Account) -> Option<Thrower> {
         Some(Origin::Beside { side }) => Some(Thrower::Beside(side)),
         Some(Origin::Cross { side }) => Some(Thrower::Cross(side)),
         Some(Origin::Ahead) => Some(Thrower::Ahead),
+        Some(Origin::Opposite) => Some(Thrower::Opposite),
         // Who changes to its right comes from the left.
         _ => match other.acts.iter().find(changes) {
             Some(change) => change.side.map(|side| Thrower::Beside(side.other())),

@@ -188,8 +188,10 @@ pub(crate) enum Thrower {
     Beside(LeftRight),
     /// It is ahead in the ego's lane.
     Ahead,
-    /// Out of a crossing road: that is not drawn.
+    /// Out of a crossing road.
     Cross(LeftRight),
+    /// From the opposite direction.
+    Opposite,
 }
 
 /// Those to whom an ego gives way.

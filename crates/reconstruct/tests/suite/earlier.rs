@@ -2,7 +2,7 @@
 //! side, who went away from whom it lets by.
 
 use crate::others::track;
-use crate::ways::{before_contact, made, partner, speeds, story};
+use crate::ways::{before_contact, degrees_between, made, partner, speeds, story};
 use recrash_model::account::{Account, Act, Fact, Origin};
 use recrash_model::rollout::ActorState;
 use recrash_model::scenario::ObstacleKind;
@@ -128,4 +128,50 @@ fn who_stood_behind_an_ego_that_turns_comes_out_of_its_lane() {
     let shown = made(&account);
     let aside_m = partner(&shown).0[0].y - shown.rollout.ego_track().states[0].y;
     assert!(aside_m.abs() < 1.0, "{aside_m}");
+}
+
+const THROWN_ACROSS: &str = "The AV was stopped at a red light on Elm Street at Oak Street, facing south. A sedan traveling north on Elm Street ran a red \
+                             light. The sedan was struck by a van traveling east on Oak Street, and the front of the sedan then made contact \
+                             with the front of the stationary AV.";
+
+const THROWN_HEAD_ON: &str = "The AV was stopped at a stop sign on Elm Street at Oak Street, facing south. A sedan that was stopped facing east on Oak \
+                              Street began a left turn onto northbound Elm Street. An SUV traveling north on Elm Street entered the \
+                              intersection, and the front of the SUV made contact with the right side of the sedan. The front of the sedan \
+                              then made contact with the front left of the stationary AV.";
+
+#[test]
+fn who_throws_the_partner_comes_along_its_own_road() {
+    let heading = |text: &str| {
+        let shown = made(&story(text));
+        let ego = shown.rollout.ego_track().states[0].heading;
+        degrees_between(track(&shown, "pusher").states[0].heading, ego)
+    };
+    assert!((80.0..100.0).contains(&heading(THROWN_ACROSS)));
+    assert!(heading(THROWN_HEAD_ON) > 170.0);
+    // Of whom it is not told from where it came.
+    assert!(heading(&THROWN_ACROSS.replace("by a van traveling east on Oak Street", "by a van")) > 170.0);
+}
+
+#[test]
+fn who_goes_straight_on_meets_an_ego_that_has_just_begun_its_turn() {
+    let mut account = story(
+        "The AV was traveling north on Elm Street in the right lane when it began to turn right into a parking lot. A sedan approached from \
+         behind and the front of the sedan made contact with the rear of the AV.",
+    );
+    account.partner.as_mut().expect("a partner").movement =
+        Some(Fact::by_rule(Movement::Straight, "made for this test"));
+    let shown = made(&account);
+    let ego = shown.rollout.ego_track();
+    let turned = degrees_between(ego.states[before_contact(&shown)].heading, ego.states[0].heading);
+    assert!((20.0..45.0).contains(&turned), "{turned}");
+}
+
+const BACKS_INTO_A_STALL: &str = "The AV was traveling north in a parking lot and came to a stop behind a van. The van reversed to park in a stall, and the \
+                                  right side of the van made contact with the front of the stationary AV.";
+
+#[test]
+fn who_backs_into_a_stall_swings_round() {
+    let shown = made(&story(BACKS_INTO_A_STALL));
+    let (states, met) = partner(&shown);
+    assert!(degrees_between(met.heading, states[0].heading) > 8.0, "{:?} to {met:?}", states[0]);
 }
