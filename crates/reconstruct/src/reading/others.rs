@@ -100,7 +100,9 @@ pub(super) fn wanted(told: &Told, account: &Account) -> Vec<Extra> {
         // Traffic that an ego passes which is not told to have slowed or stood is there.
         let passes =
             |role: Role| role == Role::Crosser && !told.sv.state.stands() && story.reactions().next().is_none();
-        let role = story.role(told, other).filter(|role| is_drawn(told, *role) && !passes(*role));
+        // Nor does traffic that went on before the ego stopped, for something else, stand in its way.
+        let gone = |role: Role| role == Role::Lead && (story.has_gone(told, other) || is_heard(other));
+        let role = story.role(told, other).filter(|role| is_drawn(told, *role) && !passes(*role) && !gone(*role));
         let Some(role) = role else {
             list.extend(near(&list));
             continue;
@@ -158,6 +160,12 @@ pub(super) fn wanted(told: &Told, account: &Account) -> Vec<Extra> {
     }
     for_reasons(&story, told, &mut list);
     list
+}
+
+/// Whether somebody with a siren is told of without a place or a deed: it is nobody who stands ahead.
+fn is_heard(other: &Other) -> bool {
+    let siren = matches!(other.kind.value, Kind::PoliceCar | Kind::Ambulance | Kind::FireTruck | Kind::FirstResponder);
+    siren && other.place.is_none() && before_contact(other).next().is_none()
 }
 
 /// Whether somebody who is told ahead is the nearest of traffic that stands there, which may be of any kind.

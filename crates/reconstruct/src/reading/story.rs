@@ -124,6 +124,16 @@ impl Story<'_> {
         Some(self.account.sv.acts.iter().find(moves).is_some_and(|fact| at < fact.step))
     }
 
+    /// Whether somebody ahead is only told to have gone on, before the ego came to the stop in which it stands, for no queue or vehicle ahead.
+    pub(super) fn has_gone(&self, told: &Told, other: &Other) -> bool {
+        let waits = |reason: &StandReason| matches!(reason, StandReason::Queue | StandReason::LeadVehicle);
+        let stop = self.account.sv.acts.iter().rfind(|fact| fact.act == Act::Stop && !fact.after_contact);
+        let last = before_contact(other).map(|fact| fact.step).max();
+        let stops = told.sv.state == ContactState::Stopped && !told.reasons.iter().any(waits);
+        let goes = before_contact(other).all(|fact| matches!(fact.act, Act::SetOff | Act::Follow | Act::Accelerate));
+        stops && goes && last.is_some_and(|last| stop.is_some_and(|stop| last < stop.step))
+    }
+
     /// Whether somebody stands, or comes to a stop, behind that the ego set off, and the ego slows or stops again.
     pub(super) fn stands_again(&self, other: &Other) -> bool {
         let ego = || self.account.sv.acts.iter().filter(|fact| !fact.after_contact);

@@ -175,3 +175,22 @@ fn who_backs_into_a_stall_swings_round() {
     let (states, met) = partner(&shown);
     assert!(degrees_between(met.heading, states[0].heading) > 8.0, "{:?} to {met:?}", states[0]);
 }
+
+const ADVANCED: &str = "The AV was traveling north on Elm Street, slowing for traffic ahead. As traffic ahead advanced, the AV proceeded forward and came to \
+                        a stop for a red light at the intersection of Elm Street and Oak Street. A van approached from behind and the front \
+                        of the van made contact with the rear of the stationary AV.";
+
+#[test]
+fn traffic_that_went_on_before_the_ego_stopped_does_not_stand_ahead_of_it() {
+    let stands_ahead = |text: &str| {
+        let shown = made(&story(text));
+        let (ego, last) = (shown.rollout.ego_track(), before_contact(&shown));
+        let at = &ego.states[last];
+        let others = shown.rollout.actors.iter().filter(|track| !["ego", "cp"].contains(&track.id.as_str()));
+        let mut others = others.map(|track| &track.states[last]);
+        others.any(|state| state.x > at.x && (state.y - at.y).abs() < 1.0 && state.speed() < 0.1)
+    };
+    assert!(!stands_ahead(ADVANCED));
+    let queue = ADVANCED.replace("for a red light at", "behind traffic that was stopped for a red light at");
+    assert!(stands_ahead(&queue));
+}
