@@ -51,16 +51,14 @@ pub(super) fn told(party: &Party, state: ContactState) -> Vec<Doing> {
         let over = acts[number + 1..].iter().any(|later| later.act == Act::Turn);
         let (step, after_other) = (fact.step, fact.after_other);
         // "It then began to turn": it had set off for that, behind what the other did.
+        let set_off =
+            |implied| Doing { act: Act::SetOff, side: None, begun: false, over: false, implied, step, after_other };
         if standing && !state.stands() && after_other.is_some() && sets_off_for(fact.act) {
-            let set_off =
-                Doing { act: Act::SetOff, side: None, begun: false, over: false, implied: true, step, after_other };
-            list.push(set_off);
+            list.push(set_off(true));
         }
         // Who is told to have set off from there went on so.
         let goes = standing && fact.act == Act::Follow && state == ContactState::SettingOff;
-        if goes {
-            list.push(Doing { act: Act::SetOff, side: None, begun: false, over: false, step, after_other });
-        }
+        list.extend(goes.then(|| set_off(false)));
         standing = stands(fact.act) || standing && waits && !goes;
         if !skipped {
             let (act, side, begun) = (fact.act, fact.side, fact.begun);
