@@ -23,7 +23,7 @@ pub(super) fn is_near(told: &[ContactZone], seen: ContactZone, outline: &Oriente
 
 /// When somebody came to the place of the contact is looked for in such steps; who came by so much earlier was first. [s]
 const LOOKS_S: f64 = 0.01;
-const FIRST_S: f64 = 0.035;
+const FIRST_S: f64 = 0.1;
 
 /// Who come within this time come together. [s]
 const TOGETHER_S: f64 = 1.0;

@@ -218,11 +218,13 @@ pub(crate) fn facts(told: &Told, scenario: &Scenario, rollout: &Rollout) -> Vec<
         fact(CheckKind::Approach, shown, origin_words(told), observed);
     }
     if let (Some(first), Some(track)) = (told.order, touch.track) {
-        // Who stands there holds what a door of its reaches; a door of the partner's comes there when it opens.
-        let ego_reach_m = if ego_part.is_some() { DOOR_M } else { MET_M };
+        // Who stands there holds what a door of its reaches; a door of the partner's comes there when it opens, and an ego within its reach
+        // was there before.
         let number = rollout.actors.iter().position(|other| other.id == track.id);
         let door = rollout.actors.iter().find(|other| other.part_of.is_some() && other.part_of == number);
-        let partner = door.filter(|_| other_part.is_some()).unwrap_or(track);
+        let door = door.filter(|_| other_part.is_some());
+        let ego_reach_m = if ego_part.is_some() || door.is_some() { DOOR_M } else { MET_M };
+        let partner = door.unwrap_or(track);
         let (shown, observed) =
             order(first, [(ego_track, ego_reach_m), (partner, MET_M)], geometry.point, touch.time_s);
         fact(CheckKind::Order, shown, first.words().to_owned(), observed);

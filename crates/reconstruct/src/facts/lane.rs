@@ -47,7 +47,7 @@ pub(super) fn lane(
     };
     let first = &track.states[at];
     let Some(id) = network.lane_at(first.position(), first.heading) else {
-        return (CheckResult::CannotBeShown, "on no lane".to_owned());
+        return (CheckResult::NotShown, "on no lane".to_owned());
     };
     let road = network.road(network.lane(id).road);
     if let Some(strip) = layout::strip_of(word) {

@@ -1,6 +1,5 @@
 //! What each of the two is told to have done before the contact, one act after the other.
 
-use crate::reading::words::text;
 use crate::told::doing::{Doing, least};
 use crate::told::zones::side_of;
 use recrash_model::account::{
@@ -31,7 +30,6 @@ pub(super) fn told(party: &Party, state: ContactState) -> Vec<Doing> {
             Act::Turn => {
                 at_line && !stood && acts[number..].iter().any(|later| stands(later.act)) || turns_again(fact, &acts)
             }
-            Act::UTurn => is_of_several_points(fact, state),
             Act::Park => list.last().is_some_and(|last| stands(last.act)),
             // So did who came out of a lot and drove along since.
             Act::PullOut => list.is_empty() && told_of(&party.movement) == Some(Movement::Straight),
@@ -83,12 +81,6 @@ pub(super) fn told(party: &Party, state: ContactState) -> Vec<Doing> {
 fn turns_again(turn: &ActFact, acts: &[&ActFact]) -> bool {
     let later = acts.iter().filter(|fact| fact.act == Act::Turn && fact.step > turn.step);
     turn.side.is_some_and(|side| later.into_iter().any(|later| later.side == Some(side.other())))
-}
-
-/// Whether somebody who stands or backs was turning round in several goes: that is one of them, and no whole turn.
-pub(super) fn is_of_several_points(fact: &ActFact, state: ContactState) -> bool {
-    let parts = state.stands() || state == ContactState::Reversing;
-    fact.act == Act::UTurn && parts && text(&fact.source).contains("point")
 }
 
 /// Whether somebody who stood has set off to do this.

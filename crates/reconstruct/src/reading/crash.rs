@@ -4,7 +4,7 @@ use crate::reading::order::{backs_behind, backs_first, stood_before, turns_green
 use crate::reading::origin::{self, assumed_origin};
 use crate::reading::side::side;
 use crate::reading::things::{self, POST};
-use crate::reading::{acts, edge, others, trailer, turns};
+use crate::reading::{acts, edge, others, trailer};
 use crate::told::choices::Choices;
 use crate::told::crash::Told;
 use crate::told::layout::Layout;
@@ -63,10 +63,6 @@ impl Told {
         }
         let origin = told(&account.came_from);
         let origin = if passed { origin::passed_beside(account, &sv).or(origin) } else { origin };
-        // Whom it touches behind its front it has met on its road, and not on the crossing one.
-        let rear = !sv.zones.is_empty() && sv.zones.iter().all(|zone| zone.is_rear());
-        let met_there = sv.state.stands() && rear && turns::came_round_against(partner, origin);
-        let origin = if met_there { Some(Origin::Opposite) } else { origin };
         let origin_told = origin.is_some();
         let assumed_from =
             origin::out_of_stall(account, crash_type, &sv, &cp).or_else(|| assumed_origin(crash_type, &sv, &cp));
@@ -172,7 +168,6 @@ impl Told {
         };
         this.queued = this.was_in_queue(account, partner);
         this.courses(&account.sv, partner);
-        this.leaves_road(partner);
         this.phases();
         this.gives_way_to_merge = this.stops_for_merge(&account.sv, partner);
         this.wanted = others::wanted(&this, account);

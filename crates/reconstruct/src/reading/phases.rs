@@ -1,6 +1,5 @@
 //! What somebody is told to have done before the last thing that it does.
 
-use crate::reading::acts;
 use crate::told::phase::Phase;
 use recrash_model::account::{Act, ActFact, ContactState, Party, Standing};
 
@@ -30,9 +29,6 @@ pub(super) fn told(party: &Party, state: ContactState) -> Vec<Phase> {
         // Of what was begun, a way from one stop to the next was driven.
         let stops_next = acts[number..].iter().find(|fact| stands(fact)).is_some_and(|fact| fact.act == Act::Stop);
         if fact.begun && !(drives_aside(fact.act) && list.last() == Some(&Phase::Stands) && stops_next) {
-            continue;
-        }
-        if acts::is_of_several_points(fact, state) {
             continue;
         }
         went_on |= fact.act == Act::Slow && !list.is_empty();

@@ -1,10 +1,7 @@
 //! How somebody is told to have turned, and by which way it came to its stop.
 
-use crate::reading::words::span;
-use crate::told::crash::Told;
 use crate::told::side::Turning;
-use recrash_model::account::{Act, ActFact, Fact, LeftRight, Origin, Party, Source, StandReason, Standing, told};
-use recrash_model::template::Movement;
+use recrash_model::account::{Act, ActFact, Fact, LeftRight, Party, Source, StandReason, Standing, told};
 
 /// Whether somebody who does this leaves the line that it drives on, without a turn.
 pub(super) fn leaves_line(act: Act) -> bool {
@@ -80,43 +77,4 @@ pub(super) fn turned_before(party: &Party) -> Turning {
         Some(LeftRight::Right) => Turning::Right,
         None => Turning::No,
     }
-}
-
-impl Told {
-    /// Takes away what is told of the road by which the partner came before it turned onto the one that it drove along since: "turned left
-    /// over a stop sign, and drove up to it". No such road is drawn.
-    pub(super) fn leaves_road(&mut self, partner: &Party) {
-        let drawn = self.cp.turning != Turning::No || self.cp.turns_later || self.cp.slants.is_some();
-        let Some((turn, since)) = turned_onto(partner).filter(|_| !drawn) else { return };
-        self.cp.acts.retain(|doing| !(doing.is_turn() && doing.step <= turn.step));
-        let starts = |source: &Source| span(source).map(|(start, _)| start);
-        let before = |source: &Source, end: &ActFact| starts(source).is_some_and(|at| Some(at) < starts(&end.source));
-        let run = |fact: &&ActFact| matches!(fact.act, Act::RunRed | Act::RunStop);
-        let ran_later = partner.acts.iter().filter(run).any(|fact| fact.step > since.step);
-        if !ran_later && partner.controls.iter().all(|fact| before(&fact.source, since)) {
-            self.cp.control = None;
-        }
-        if partner.lane.as_ref().is_some_and(|lane| before(&lane.source, turn)) {
-            self.cp.lane = None;
-        }
-    }
-}
-
-/// Whether the partner is told to have turned out of the crossing road against the ego's way, and to have driven straight along there since:
-/// "turned right onto Elm Street and passed the AV".
-pub(super) fn came_round_against(partner: &Party, origin: Option<Origin>) -> bool {
-    let Some(Origin::Cross { side }) = origin else { return false };
-    let straight = matches!(told(&partner.movement), Some(Movement::Straight | Movement::Passing));
-    let turn = turned_onto(partner).map(|(turn, _)| turn).filter(|turn| turn.side == Some(side.other()));
-    let leaves = |fact: &ActFact| leaves_line(fact.act) && !fact.after_contact;
-    straight && turn.is_some_and(|turn| !partner.acts.iter().any(|fact| fact.step > turn.step && leaves(fact)))
-}
-
-/// The last turn of somebody, and what tells that it drove along behind that.
-fn turned_onto(party: &Party) -> Option<(&ActFact, &ActFact)> {
-    let before = || party.acts.iter().filter(|fact| !fact.after_contact && !fact.begun);
-    let turn = before().filter(|fact| fact.act == Act::Turn).max_by_key(|fact| fact.step)?;
-    let along = |fact: &&ActFact| matches!(fact.act, Act::Follow | Act::Pass) && fact.step > turn.step;
-    let since = before().filter(along).min_by_key(|fact| fact.step)?;
-    Some((turn, since))
 }

@@ -1,34 +1,14 @@
-//! What is told of the road by which somebody came, of a part of a longer turn, or only implied, is not asked for as a deed of its own.
+//! What is told of the road by which somebody came, or only implied, is not asked for as a deed of its own.
 
 use crate::acts::acts_without;
 use crate::ways::{before_contact, made, partner, speeds, story};
 use recrash_model::account::{Account, Act, ActFact, ContactState, Fact, LeftRight, Speed, SpeedMeaning};
-use recrash_model::math;
 use recrash_model::metrics::{Check, CheckKind, CheckResult};
 use recrash_model::template::Movement;
-use recrash_reconstruct::{Reconstruction, held_against, reconstruct};
+use recrash_reconstruct::{Reconstruction, held_against};
 
 const TWO_TURNS: &str = "The AV turned left onto Elm Street and drove along it. It then made a right turn into the entrance of a parking \
                          lot, and the underside of the AV scraped the pavement.";
-
-const OVER_A_SIGN: &str = "The AV was parked facing north at the east curb of Elm Street. A van traveling eastbound on Oak Street turned left \
-                           at the intersection without stopping at the stop sign. The van continued to travel northbound on Elm Street, \
-                           approached the AV from behind, and the front right of the van made contact with the rear left of the parked AV.";
-
-const TURNED_IN: &str = "The AV was stopped facing north at a red light at the intersection of Elm Street and Oak Street. A pickup truck \
-                         traveling eastbound on Oak Street made a right turn onto southbound Elm Street, and the left side of the \
-                         pickup truck made contact with the rear left of the stationary AV.";
-
-const CAME_BY: &str = "The AV was stopped facing north on Elm Street. While the AV was stopped, a pickup truck traveling eastbound on Oak \
-                       Street turned right onto Elm Street and passed the AV. As the pickup truck was passing the AV, the front left of \
-                       the pickup truck made contact with the rear left of the AV.";
-
-const SEVERAL_POINTS: &str = "The AV was stopped in its lane facing east for an SUV that was attempting a multi-point turn. The SUV stopped \
-                              across the road facing north. The AV proceeded forward and the SUV reversed, and the rear left of the \
-                              SUV made contact with the left side of the AV.";
-
-const ROUND: &str = "The AV was traveling east when an oncoming SUV made a U-turn in front of the AV, and the front of the AV made contact \
-                     with the left side of the SUV.";
 
 const LATE: &str = "The AV was traveling east on Elm Street. A sedan was stopped at the stop sign on Oak Street, to the right of the AV. \
                     When the AV entered the intersection, the sedan entered the intersection, and the front of the sedan made contact \
@@ -52,36 +32,6 @@ fn checks(account: &Account, made: Reconstruction) -> Vec<Check> {
 #[test]
 fn of_two_turns_to_both_sides_the_last_is_driven() {
     assert_eq!(told(&made(&story(TWO_TURNS)), CheckKind::SvActs), Some("turned to the right"));
-}
-
-#[test]
-fn who_turned_onto_the_road_and_drove_along_it_left_its_sign_behind() {
-    let shown = made(&story(OVER_A_SIGN));
-    assert_eq!((told(&shown, CheckKind::CpActs), told(&shown, CheckKind::CpControl)), (None, None));
-    let (states, met) = partner(&shown);
-    assert!((states[0].heading - met.heading).abs() < 0.3 && met.speed() > 2.0, "{met:?}");
-    // One that touches in its turn has not.
-    assert_eq!(told(&made(&story(TURNED_IN)), CheckKind::CpActs), Some("turned to the right"));
-}
-
-#[test]
-fn who_has_turned_towards_the_ego_and_passes_it_comes_along_its_road() {
-    let mut account = story(CAME_BY);
-    account.partner.as_mut().expect("told").movement =
-        Some(Fact::of_column(Movement::Passing, "CP Pre-Crash Movement"));
-    let shown = made(&account);
-    let (states, met) = partner(&shown);
-    assert!(math::cos(states[0].heading) < -0.9 && math::cos(met.heading) < -0.9, "{met:?}");
-    let turned = made(&story(TURNED_IN));
-    assert!(math::cos(partner(&turned).0[0].heading).abs() < 0.1, "in its turn it comes by the other road");
-}
-
-#[test]
-fn a_turn_of_several_points_is_done_in_parts() {
-    let shown = made(&story(SEVERAL_POINTS));
-    assert_eq!(told(&shown, CheckKind::CpActs), Some("stopped, reversed"));
-    let round = reconstruct(&story(ROUND)).expect("it can be staged");
-    assert_eq!(told(&round, CheckKind::CpActs), Some("turned round"));
 }
 
 #[test]
