@@ -303,8 +303,20 @@ impl Chunker<'_> {
     /// "a gravel-hauling truck" is a truck: the token behind the participle, where a vehicle is named there.
     fn is_carried(&self, behind: usize) -> Option<usize> {
         let carries = matches!(self.text(behind), "hauling" | "carrying" | "towing" | "collecting" | "delivering");
-        let trailer = self.text(behind + 1) == "trailer";
-        (carries && !trailer && self.vehicle(behind + 1)).then_some(behind + 1)
+        let carrier = self.text(behind + 1);
+        // "a truck carrying cars" is no cars.
+        let load = carrier == "trailer" || carrier.ends_with('s') && carrier != "bus";
+        (carries && !load && self.vehicle(behind + 1)).then_some(behind + 1)
+    }
+
+    /// "near a pedestrian crossing". "It hit a pedestrian crossing" tells of somebody.
+    pub(super) fn is_behind_a_place_word(&self, at: usize) -> bool {
+        let back = |by: usize| at.checked_sub(by).map_or("", |at| self.text(at));
+        let before = if DETERMINERS.contains(&back(1)) { back(2) } else { back(1) };
+        matches!(
+            before,
+            "at" | "near" | "through" | "of" | "past" | "before" | "approaching" | "approached" | "toward" | "towards"
+        )
     }
 
     /// "a truck-mounted sign" names no truck. "A truck mounted the curb" does.
@@ -480,7 +492,8 @@ impl Chunker<'_> {
         );
         // "at a pedestrian crossing": "a pedestrian crossing the street" is somebody.
         let behind = self.text(at + found.length + 1);
-        let place = place || next == "crossing" && matches!(behind, "" | "." | "," | "sign" | "signal" | "light");
+        let ends = matches!(behind, "" | "." | ",") && self.is_behind_a_place_word(at);
+        let place = place || next == "crossing" && (ends || matches!(behind, "sign" | "signal" | "light"));
         let walks = kind.is_some_and(|kind| matches!(kind.group(), KindGroup::OnFoot | KindGroup::Cyclist));
         let named = kind == Some(Kind::Animal) && self.tokens[at].capital && matches!(next, "pedestrian" | "crosswalk");
         if place && (walks || kind == Some(Kind::Animal)) || named {

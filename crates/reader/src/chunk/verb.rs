@@ -261,7 +261,8 @@ impl Candidate<'_> {
         let named = matches!(self.word_before, "railroad" | "railway" | "pedestrian" | "school" | "deer" | "cattle");
         self.word(0) == "crossing"
             && named
-            && matches!(self.word(1), "" | "." | "," | "sign" | "signal" | "light" | "guard")
+            && (matches!(self.word(1), "sign" | "signal" | "light" | "guard")
+                || matches!(self.word(1), "" | "." | ",") && self.chunker.is_behind_a_place_word(self.at - 1))
     }
 
     /// "a truck-mounted sign".

@@ -61,7 +61,9 @@ fn side_as_before(reading: &Reading<'_>, number: usize) -> Option<LeftRight> {
     let frame = &frames[number];
     let word = |back: usize| frame.first.checked_sub(back).map_or("", |at| tokens[at].text.as_str());
     let meanwhile = word(1) == "while" && frame.form == Form::Ing;
-    let goes_on = meanwhile || (1..3).any(|back| word(back).starts_with("continu"));
+    // "while changing lanes back" goes to the other one.
+    let back = tokens[frame.first..(frame.end + 2).min(tokens.len())].iter().any(|token| token.text == "back");
+    let goes_on = !back && (meanwhile || (1..3).any(|back| word(back).starts_with("continu")));
     let over = |other: &&Frame| {
         other.who == frame.who && other.side.is_some() && !other.negated && other.act().is_some_and(moves_over)
     };
@@ -82,13 +84,16 @@ fn side_of_pass(reading: &Reading<'_>, number: usize) -> Option<LeftRight> {
 fn as_signaled(reading: &Reading<'_>, actor: Actor, frame: &Frame) -> Option<LeftRight> {
     let from = reading.story.sentences[frame.sentence.saturating_sub(1)].first;
     let words: Vec<&str> = reading.story.tokens[from..frame.first].iter().map(|token| token.text.as_str()).collect();
-    let of_subject =
-        actor == SUBJECT && reading.story.frames.iter().any(|other| other.who == Some(SUBJECT) && other.first >= from);
-    let signal = words.windows(3).rev().find_map(|run| match run {
-        ["its", side @ ("left" | "right"), "turn" | "signal" | "indicator" | "blinker"] => Some(*side),
+    let (at, side) = words.windows(3).enumerate().rev().find_map(|(at, run)| match run {
+        ["its", side @ ("left" | "right"), "turn" | "signal" | "indicator" | "blinker"] => Some((from + at, *side)),
         _ => None,
-    });
-    match signal.filter(|_| of_subject && frame.form == Form::Ing)? {
+    })?;
+    // Of whom that sentence tells.
+    let sentence = reading.story.sentences.iter().rposition(|sentence| sentence.first <= at);
+    let of_subject =
+        |other: &Frame| other.who == Some(SUBJECT) && Some(other.sentence) == sentence && other.first <= at;
+    let own = actor == SUBJECT && reading.story.frames.iter().any(of_subject);
+    match Some(side).filter(|_| own && frame.form == Form::Ing)? {
         "left" => Some(LeftRight::Left),
         _ => Some(LeftRight::Right),
     }
@@ -102,7 +107,9 @@ fn away_from_the_kerb(reading: &Reading<'_>, actor: Actor, frame: &Frame) -> Opt
         let curb = words.windows(3).any(|run| {
             run[0].text == "along" && run[1].text == "the" && matches!(run[2].text.as_str(), "curb" | "curbside")
         });
-        curb && before.act() == Some(Act::Follow)
+        // "along the curb on the left side of the street".
+        let left = words.iter().any(|token| token.text == "left");
+        curb && !left && before.act() == Some(Act::Follow)
     });
     (along && actor != SUBJECT).then_some(LeftRight::Left)
 }

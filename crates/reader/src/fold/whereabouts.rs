@@ -108,7 +108,10 @@ fn approached(clues: &Clues<'_>) -> Option<Fact<Origin>> {
     };
     let along = !known.several && known.kind.is_some_and(Kind::is_vehicle) && reading.before(actor).any(drives);
     // "It encountered a double-parked van": that stands in a lane.
-    let in_lane = !known.several && reading.story.tokens[first..end].iter().any(|token| token.text == "double");
+    let in_lane = !known.several
+        && reading.story.tokens[first..(end + 1).min(reading.story.tokens.len())]
+            .windows(2)
+            .any(|pair| pair[0].text == "double" && pair[1].text.starts_with("park"));
     (!passes && (along || in_lane || is_queue_met(reading, number))).then(|| reading.told(Origin::Ahead, first, end))
 }
 

@@ -35,7 +35,13 @@ fn says_both(tokens: &[Token], first: usize) -> bool {
     let before = &tokens[first.saturating_sub(BOTH_BEFORE)..first];
     let pair =
         |words: &[Token]| words[0].text == "both" && matches!(words[1].text.as_str(), "vehicles" | "cars" | "trucks");
-    before.windows(2).any(pair)
+    // "Both vehicles ahead stopped" tells of two others.
+    let small = |token: &Token| {
+        let word = token.text.as_str();
+        matches!(word, "were" | "had" | "have" | "then" | "began" | "started" | "to" | "also" | "both")
+            || word.ends_with("ly")
+    };
+    before.windows(2).rposition(pair).is_some_and(|at| before[at + 2..].iter().all(small))
 }
 
 /// "both vehicles began to proceed": so many words stand before the verb. [tokens]

@@ -102,7 +102,13 @@ fn drives(tokens: &[Token], at: usize) -> bool {
     let found =
         Lexicon::get().longest(tokens, at, |meaning| matches!(meaning, Meaning::Verb(sense, _) if moves(sense)));
     let switched = |length: usize| matches!(word(at + length), "off" | "on" | "itself" | "down" | "online" | "offline");
-    STEMS.iter().any(|stem| word(at).starts_with(stem)) && found.is_some_and(|found| !switched(found.length))
+    // "turned the lights on", "passed control to somebody", "moved to a fallback mode".
+    let handles = ["turn", "pass", "mov"].iter().any(|stem| word(at).starts_with(stem))
+        && (matches!(word(at + 1), "the" | "its" | "control")
+            || word(at + 1) == "to" && matches!(word(at + 2), "a" | "its"));
+    STEMS.iter().any(|stem| word(at).starts_with(stem))
+        && found.is_some_and(|found| !switched(found.length))
+        && !handles
 }
 
 /// "began to break hard", "this abrupt breaking": spelled as it sounds.
@@ -119,8 +125,16 @@ fn brake(tokens: &mut [Token]) {
             _ => continue,
         };
         let (before, behind) = (tokens[at - 1].text.as_str(), tokens[at + 1].text.as_str());
-        let ends = matches!(behind, "but" | "and" | "." | ",") && matches!(before, "to" | "started" | "began");
-        if hard(before) || hard(behind) || ends {
+        let begins = |word: &str| matches!(word, "started" | "began");
+        let begun = begins(before) || before == "to" && at > 1 && begins(&tokens[at - 2].text);
+        let ends = matches!(behind, "but" | "and" | "." | ",") && begun;
+        let part = |token: &Token| {
+            matches!(
+                token.text.as_str(),
+                "mirror" | "glass" | "light" | "lights" | "headlight" | "window" | "windshield" | "bumper"
+            )
+        };
+        if (hard(before) || hard(behind) || ends) && !tokens[at.saturating_sub(4)..at].iter().any(part) {
             brakes.clone_into(&mut tokens[at].text);
         }
     }
@@ -137,8 +151,12 @@ fn name_codes(tokens: &mut Vec<Token>) {
             at += 1;
             continue;
         };
-        let of_company = (at.saturating_sub(NAME_BEFORE)..at).any(|at| {
-            tokens[at].capital && lexicon.longest(tokens, at, |meaning| matches!(meaning, Meaning::Company)).is_some()
+        // "An Acme shuttle hit a truck (TX-4521)": the code is the truck's.
+        let article = |token: &Token| matches!(token.text.as_str(), "a" | "an" | "the" | "another");
+        let of_company = (at.saturating_sub(NAME_BEFORE)..at).any(|name| {
+            tokens[name].capital
+                && lexicon.longest(tokens, name, |meaning| matches!(meaning, Meaning::Company)).is_some()
+                && !tokens[name..at].iter().any(article)
         });
         let code: Vec<String> = tokens[at + 1..end].iter().map(|token| token.text.clone()).collect();
         let mut again = at + 1;

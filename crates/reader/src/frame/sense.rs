@@ -291,9 +291,11 @@ fn is_outside(parser: &Parser<'_>, verb: &Spoken<'_>, carry: &Carry) -> Option<S
 
 /// "while his hand rested on the wheel": the vehicle did not rest.
 fn is_of_a_hand(parser: &Parser<'_>, verb: &Spoken<'_>, _carry: &Carry) -> Option<Sense> {
-    let before = verb.placed().first.checked_sub(1).map_or("", |at| parser.tokens[at].text.as_str());
-    let hand = matches!(before, "hand" | "hands" | "foot" | "feet" | "head" | "arm");
-    (hand && matches!(verb.sense, Sense::Act(_))).then_some(Sense::Other)
+    let before = |by: usize| verb.placed().first.checked_sub(by).map_or("", |at| parser.tokens[at].text.as_str());
+    let hand = matches!(before(1), "hand" | "hands" | "foot" | "feet" | "head" | "arm");
+    // "The van on the other hand braked."
+    let own = matches!(before(2), "his" | "her" | "their" | "s") || before(2).ends_with("'s");
+    (hand && own && matches!(verb.sense, Sense::Act(_))).then_some(Sense::Other)
 }
 
 /// "parked with both doors open", "had its door open": it had been opened before.

@@ -114,7 +114,9 @@ impl Parser<'_> {
             // "While driving in its lane, a man ...": who walks has none.
             let lane = self.tokens[waiting.first..].iter().take(NOUN_WORDS).any(|token| token.text == "lane");
             let on_foot = self.world.actors[actor].kind.is_some_and(|kind| kind.group() == KindGroup::OnFoot);
-            let drives = lane && on_foot && waiting.act() == Some(Act::Follow) && self.world.topic == SUBJECT;
+            let verb = self.tokens[waiting.first].text.as_str();
+            let driven = ["driv", "travel", "proceed"].iter().any(|stem| verb.starts_with(stem));
+            let drives = lane && on_foot && driven && self.world.topic == SUBJECT;
             let dangles = new && (stands || goes_on || passes || drives);
             if self.frames[pending].passive {
                 self.frames[pending].object = Some(actor);

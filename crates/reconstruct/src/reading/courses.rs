@@ -73,8 +73,6 @@ impl Told {
         if follows && matches!(self.cp.state, ContactState::Moving | ContactState::SettingOff) {
             if turns {
                 (self.cp.turning, self.cp.turns_later) = (Turning::No, true);
-            } else if self.sv.state.stands() && self.cp.turning == Turning::No {
-                self.cp.acts.retain(|doing| !doing.is_turn());
             }
         }
         for side in [&mut self.sv, &mut self.cp].into_iter().filter(|side| side.turns_later) {
