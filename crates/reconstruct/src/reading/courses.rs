@@ -70,10 +70,8 @@ impl Told {
         let in_line = self.crash_type == CrashType::FrontToRear || self.is_thrown();
         let follows = self.origin == Origin::Behind && in_line;
         let turns = matches!(self.cp.turning, Turning::Left | Turning::Right);
-        if follows && matches!(self.cp.state, ContactState::Moving | ContactState::SettingOff) {
-            if turns {
-                (self.cp.turning, self.cp.turns_later) = (Turning::No, true);
-            }
+        if follows && turns && matches!(self.cp.state, ContactState::Moving | ContactState::SettingOff) {
+            (self.cp.turning, self.cp.turns_later) = (Turning::No, true);
         }
         for side in [&mut self.sv, &mut self.cp].into_iter().filter(|side| side.turns_later) {
             side.acts.retain(|doing| !doing.is_turn());
