@@ -1,10 +1,12 @@
 //! The first telling of a crash that shows every told fact, else the one that shows most.
 
+use crate::facts::held;
 use crate::search::best::{Found, acts_left_open, is_of_acts, left_open, searched};
 use crate::search::reconstruction::Reconstruction;
 use crate::told::crash::Told;
 use recrash_model::account::{Account, Untold};
-use recrash_model::metrics::CheckKind;
+use recrash_model::metrics::{CheckKind, Verdict};
+use recrash_roads::check;
 
 /// So many are run in all.
 const MOST_RUNS: usize = 1000;
@@ -17,15 +19,26 @@ const AGAIN_RUNS: usize = 100;
 pub(crate) fn staged(told: Told, account: &Account) -> Result<Reconstruction, Untold> {
     let fewer = told.plainly().into_iter().chain(told.in_fewer_steps()).chain(told.touched_anyhow());
     let others: Vec<Told> = fewer.chain([told.coming_straight()]).collect();
+    let asked = told.clone();
     let made = in_order(told, account, MOST_RUNS);
     let is_true = |made: &Result<Found, Untold>| made.as_ref().is_ok_and(|found| found.made.is_true());
     let other = match is_true(&made) {
         true => None,
-        false => others.into_iter().map(|told| in_order(told, account, AGAIN_RUNS)).find(is_true),
+        false => {
+            let others = others.into_iter().map(|told| in_order(told, account, AGAIN_RUNS));
+            others.map(|made| made.map(|found| held_again(found, &asked))).find(is_true)
+        }
     };
     // The one that is kept is named by its states.
     let named = |made: Reconstruction| Reconstruction { rollout: made.rollout.named(), ..made };
     other.unwrap_or(made).map(|found| named(found.made))
+}
+
+/// The same, held against all that is told, and not against what was told for it.
+fn held_again(found: Found, asked: &Told) -> Found {
+    let Ok(scenario) = check(found.made.draft.clone()) else { return found };
+    let checks = held::facts(asked, &scenario.value, &found.made.rollout);
+    Found { made: Reconstruction { verdict: Verdict { checks }, ..found.made }, strays: found.strays }
 }
 
 /// The same, of which one is taken at another time that shows more of what the two did, and no less else.

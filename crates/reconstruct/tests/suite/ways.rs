@@ -68,10 +68,13 @@ pub fn story(text: &str) -> Account {
     account_of(text).expect("a story")
 }
 
-/// A staging that shows all that is told.
+/// A staging that shows all that is told, whatever was told otherwise on the way to it.
 pub fn made(account: &Account) -> Reconstruction {
     let made = reconstruct(account).expect("it can be staged");
     assert!(made.is_true(), "{:?}", made.verdict);
+    let scenario = recrash_roads::check(made.draft.clone()).expect("it ran").value;
+    let again = held_against(account, &scenario, &made.rollout).expect("it can be held");
+    assert_eq!(again.failures().count(), 0, "{again:?}");
     made
 }
 
