@@ -384,10 +384,14 @@ async function checkKeys(page) {
     await map.focus();
     const told = () => page.locator('#map-detail').textContent();
     const first = await told();
-    for (const key of ['ArrowRight', 'ArrowLeft', 'ArrowUp', 'ArrowDown']) await page.keyboard.press(key);
-    await page.keyboard.press('ArrowRight');
+    // Which of them lead somewhere depends on where the first mark lies.
+    const seen = new Set([first]);
+    for (const key of ['ArrowRight', 'ArrowLeft', 'ArrowUp', 'ArrowDown']) {
+      await page.keyboard.press(key);
+      seen.add(await told());
+    }
     const marks = await page.locator('.mark').count();
-    check(first.length > 0 && (marks < 3 || (await told()) !== first || marks === 0), 'the arrow keys do not move on the map');
+    check(first.length > 0 && (marks < 3 || seen.size > 1), 'the arrow keys do not move on the map');
   }
 }
 
