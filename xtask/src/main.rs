@@ -1,5 +1,6 @@
 //! The project's one script language. `cargo xtask ci` is what CI runs, and a developer's one command.
 
+mod compiler;
 mod edges;
 mod fuzz;
 mod licences;
@@ -14,7 +15,7 @@ use tally::Tally;
 
 const USAGE: &str = "\
 usage: cargo xtask ci | STEP... | COMMAND
-  ci         all steps: `format`, `tidy`, `prepare`; then those that build beside those that run what was built
+  ci         all steps: `format`, `tidy`, `prepare`; `build`; then those that build more beside those that run what was built
 steps, of which several are done one after the other:
   format     cargo fmt --check
   tidy       what no compiler checks: map and edges in ARCHITECTURE.md, file lengths, stray paths and hosts
@@ -22,9 +23,9 @@ steps, of which several are done one after the other:
   test       all Rust tests; those on a real MetaDrive where it is set up
   python     the Python tests
   browser    makes a suite and clicks through its report in headless Chromium
-  lint       clippy over all targets, warnings denied
-  fuzz       12 s of fuzzing for each reader of untrusted files
-  docs       rustdoc, warnings denied
+  build      programs, tests, examples and benchmarks, with Clippy's lints on the way, warnings denied
+  fuzz       a short run of fuzzing for each reader of untrusted files
+  docs       rustdoc over all of that, warnings denied; and the program without language models is linted
   wheel      lint, types, tests, notebook and API pages of the Python package, in a wheel that it builds; and its sdist
 commands:
   wheel-size whether the release wheels in target/wheels are under 12 MB; `wheel` asks that too where one is there
@@ -36,6 +37,13 @@ What was skipped is named at the end. With CI set in the environment a step that
 const COUNT: [&str; 6] = ["ci", "prepare", "test", "python", "wheel", "browser"];
 
 fn main() -> ExitCode {
+    if let Some(code) = compiler::stand_in() {
+        return code;
+    }
+    if let Err(why) = compiler::prepare() {
+        eprintln!("xtask: {why}");
+        return ExitCode::FAILURE;
+    }
     let words: Vec<String> = std::env::args().skip(1).collect();
     let words: Vec<&str> = words.iter().map(String::as_str).collect();
     let mut tally = Tally::default();

@@ -1,7 +1,7 @@
 //! The steps of CI. Each is a few commands, run in the project's folder.
 
 use crate::tally::Tally;
-use crate::{fuzz, tidy, wheel};
+use crate::{compiler, fuzz, tidy, wheel};
 use std::ffi::{OsStr, OsString};
 use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
@@ -22,7 +22,7 @@ pub const STEPS: [Step; 10] = [
     ("test", test),
     ("python", python),
     ("browser", browser),
-    ("lint", lint),
+    ("build", build),
     ("fuzz", fuzz::run),
     ("docs", docs),
     ("wheel", wheel::step),
@@ -30,21 +30,18 @@ pub const STEPS: [Step; 10] = [
 
 /// Names the program that is tested. Who asks cargo for it waits until nobody else builds.
 const BUILT: &str = "RECRASH";
-/// What [`ci`] does first: what is cheap, and what tests need.
-const FIRST: [&str; 3] = ["format", "tidy", "prepare"];
+/// What [`ci`] does first: what is cheap, and what tests need. What they run is built before anybody else asks cargo for something.
+const FIRST: [&str; 4] = ["format", "tidy", "prepare", "build"];
 /// Then, one after the other in a process of its own, the steps that run what was built; they keep about one core busy.
 const RUNNING: [&str; 3] = ["test", "python", "browser"];
 /// Beside them, one after the other, the steps that build something else.
-const BUILDING: [&str; 4] = ["lint", "fuzz", "docs", "wheel"];
+const BUILDING: [&str; 3] = ["fuzz", "docs", "wheel"];
 
 /// Everything. The first failure ends what it is in, but of what runs beside each other the other one goes on to its end: so one
 /// run tells more of what is wrong, and leaves no test behind that nobody waits for.
 pub fn ci(tally: &mut Tally) -> Result {
     in_turn(&FIRST, tally)?;
-    // What tests run is built before anybody else asks cargo for something.
-    let mut program = PathBuf::new();
-    timed("build", || built().map(|built| program = built))?;
-    let aside = Aside::begin(&RUNNING, &program)?;
+    let aside = Aside::begin(&RUNNING, &program())?;
     let beside = in_turn(&BUILDING, tally);
     if let Err(why) = &beside {
         eprintln!("xtask: {why}; {} go on to their end", RUNNING.join(", "));
@@ -121,11 +118,9 @@ fn format(_: &mut Tally) -> Result {
     cargo(&["fmt", "--all", "--check"], &[])
 }
 
-fn lint(_: &mut Tally) -> Result {
-    cargo(&["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"], &[])?;
-    // Without language models: a build that docs/language-models.md offers. The rest as before, so that only what differs is read again.
-    let without_live = ["--no-default-features", "--features", "recrash-cli/parquet"];
-    cargo(&[&["clippy", "--workspace", "--lib", "--bins"], &without_live[..], &["--", "-D", "warnings"]].concat(), &[])
+/// Everything that tests, examples and benchmarks are made of, linted while it is built.
+fn build(_: &mut Tally) -> Result {
+    cargo(&["test", "--workspace", "--all-targets", "--no-run", "--quiet"], &[])
 }
 
 /// What tests need and cargo does not bring: `.venv`, a Python with MetaDrive, and what drives the browser.
@@ -167,18 +162,11 @@ fn test(tally: &mut Tally) -> Result {
     counted(&mut command, tally)
 }
 
-/// What the pages of a crate need of the others is what `lint` has checked: clippy's driver and its arguments are named as cargo
-/// names them there, or everything would be checked again.
+/// The pages of every crate; and that it builds without language models, as `docs/language-models.md` offers.
 fn docs(_: &mut Tally) -> Result {
-    let mut command = cargo_command();
-    let driver = format!("clippy-driver{}", std::env::consts::EXE_SUFFIX);
-    let driver = Path::new(command.get_program()).with_file_name(driver);
-    command.args(["doc", "--workspace", "--no-deps", "--document-private-items"]).env("RUSTDOCFLAGS", "-D warnings");
-    if driver.is_file() {
-        let arguments = "-D__CLIPPY_HACKERY__warnings__CLIPPY_HACKERY__";
-        command.env("RUSTC_WORKSPACE_WRAPPER", driver).env("CLIPPY_ARGS", arguments);
-    }
-    run(&mut command)
+    built()?;
+    compiler::pages()?;
+    compiler::without("live", "recrash_agents", "ureq")
 }
 
 /// The Python tests, of the program that the Rust tests had built.
@@ -254,8 +242,13 @@ pub fn built() -> Result<PathBuf> {
     if let Some(program) = std::env::var_os(BUILT) {
         return Ok(program.into());
     }
-    cargo(&["test", "--workspace", "--no-run", "--quiet"], &[])?;
-    Ok(target().join(if cfg!(windows) { "debug/recrash.exe" } else { "debug/recrash" }))
+    build(&mut Tally::default())?;
+    Ok(program())
+}
+
+/// Where cargo puts the program as the tests run it.
+fn program() -> PathBuf {
+    target().join(if cfg!(windows) { "debug/recrash.exe" } else { "debug/recrash" })
 }
 
 /// The project's folder.
@@ -277,7 +270,7 @@ pub fn cargo_command() -> Command {
     command(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
 }
 
-/// A program that may call cargo. What cargo told this program about the package xtask is taken away: build scripts that look at
+/// A program that may call cargo, for which [`compiler`] compiles. What cargo told this program about the package xtask is taken away: build scripts that look at
 /// it would run again, and half of the libraries with them, whenever somebody calls cargo otherwise in between.
 pub fn command(program: impl AsRef<OsStr>) -> Command {
     let mut command = Command::new(program);
@@ -287,6 +280,7 @@ pub fn command(program: impl AsRef<OsStr>) -> Command {
             command.env_remove(&name);
         }
     }
+    command.envs(compiler::variables());
     command
 }
 
