@@ -16,6 +16,11 @@ const NOTES: &str = "RECRASH_XTASK_NOTES";
 /// Clippy's arguments, apart as cargo clippy sets them.
 const ARGUMENTS: &str = "-D__CLIPPY_HACKERY__warnings__CLIPPY_HACKERY__";
 
+/// How the names of variables begin that code reads when it is compiled: cargo's, and those that build scripts of ours set. Others may be
+/// secrets.
+const READ: [&str; 6] =
+    ["CARGO_PKG_", "CARGO_MANIFEST_", "CARGO_BIN_NAME", "CARGO_CRATE_NAME", "OUT_DIR", "RECRASH_CODE"];
+
 /// What [`variables`] gives, once [`prepare`] has made it.
 static VARIABLES: OnceLock<Vec<(&str, OsString)>> = OnceLock::new();
 
@@ -87,8 +92,8 @@ fn note(arguments: &[OsString]) -> Option<(String, Value)> {
     if arguments.contains(&"--test") || !Path::new(source).components().any(|part| part.as_os_str() == "src") {
         return None;
     }
-    let of_cargo = |name: &str| name.starts_with("CARGO_") || name == "OUT_DIR";
-    let variables: BTreeMap<String, String> = env::vars().filter(|(name, _)| of_cargo(name)).collect();
+    let read = |name: &str| READ.iter().any(|known| name.starts_with(known));
+    let variables: BTreeMap<String, String> = env::vars().filter(|(name, _)| read(name)).collect();
     let note =
         json!({ "name": name, "folder": env::current_dir().ok()?, "variables": variables, "arguments": arguments });
     Some((format!("{name}-{kind}.json"), note))
