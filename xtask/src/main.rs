@@ -25,8 +25,8 @@ steps, of which several are done one after the other:
   browser    makes a suite and clicks through its report in headless Chromium
   build      programs, tests, examples and benchmarks, with Clippy's lints on the way, warnings denied
   fuzz       a short run of fuzzing for each reader of untrusted files
-  docs       rustdoc over all of that, warnings denied; and the program without language models is linted
   wheel      lint, types, tests, notebook and API pages of the Python package, in a wheel that it builds; and its sdist
+  docs       rustdoc over all of that, warnings denied; and the program without language models is linted
 commands:
   wheel-size whether the release wheels in target/wheels are under 12 MB; `wheel` asks that too where one is there
   fuzz-keep  keeps what fuzzing found, as few inputs as reach the same code

@@ -24,8 +24,8 @@ pub const STEPS: [Step; 10] = [
     ("browser", browser),
     ("build", build),
     ("fuzz", fuzz::run),
-    ("docs", docs),
     ("wheel", wheel::step),
+    ("docs", docs),
 ];
 
 /// Names the program that is tested. Who asks cargo for it waits until nobody else builds.
@@ -35,7 +35,7 @@ const FIRST: [&str; 4] = ["format", "tidy", "prepare", "build"];
 /// Then, one after the other in a process of its own, the steps that run what was built; they keep about one core busy.
 const RUNNING: [&str; 3] = ["test", "python", "browser"];
 /// Beside them, one after the other, the steps that build something else.
-const BUILDING: [&str; 3] = ["fuzz", "docs", "wheel"];
+const BUILDING: [&str; 3] = ["fuzz", "wheel", "docs"];
 
 /// Everything. The first failure ends what it is in, but of what runs beside each other the other one goes on to its end: so one
 /// run tells more of what is wrong, and leaves no test behind that nobody waits for.
@@ -120,7 +120,9 @@ fn format(_: &mut Tally) -> Result {
 
 /// Everything that tests, examples and benchmarks are made of, linted while it is built.
 fn build(_: &mut Tally) -> Result {
-    cargo(&["test", "--workspace", "--all-targets", "--no-run", "--quiet"], &[])
+    cargo(&["test", "--workspace", "--all-targets", "--no-run", "--quiet"], &[])?;
+    // A program without tests that call it is built for tests alone by that.
+    cargo(&["build", "--workspace", "--bins", "--quiet"], &[])
 }
 
 /// What tests need and cargo does not bring: `.venv`, a Python with MetaDrive, and what drives the browser.
@@ -162,7 +164,7 @@ fn test(tally: &mut Tally) -> Result {
     counted(&mut command, tally)
 }
 
-/// The pages of every crate; and that it builds without language models, as `docs/language-models.md` offers.
+/// The pages of every crate that was built, by the tests or for the wheel; and that it builds without language models, as `docs/language-models.md` offers.
 fn docs(_: &mut Tally) -> Result {
     built()?;
     compiler::pages()?;
