@@ -376,6 +376,17 @@ fn split(phrase: &str) -> Vec<String> {
     phrase.split_whitespace().map(str::to_owned).collect()
 }
 
+/// The phrases that a line of the lexicon stands for: "go/drive (over) to * lane" is four of them.
+fn spelled(line: &str) -> Vec<String> {
+    line.split_whitespace().fold(vec![String::new()], |begun, word| {
+        let inner = word.strip_prefix('(').and_then(|word| word.strip_suffix(')'));
+        let mut choices: Vec<&str> = inner.unwrap_or(word).split('/').collect();
+        choices.extend(inner.map(|_| ""));
+        let with = |begun: &String, word: &str| format!("{begun} {word}").trim().to_owned();
+        begun.iter().flat_map(|begun| choices.iter().map(|word| with(begun, word)).collect::<Vec<_>>()).collect()
+    })
+}
+
 /// The forms of a regular verb.
 fn regular(base: &str) -> Vec<(String, Form)> {
     let last = base.chars().next_back().unwrap_or(' ');
@@ -470,7 +481,7 @@ impl Lexicon {
         }
         for (name, words) in &file.relations {
             let relation = relation_of(name).expect("a relation");
-            words.iter().for_each(|phrase| lexicon.add(phrase, Meaning::Relation(relation)));
+            words.iter().for_each(|line| lexicon.add_all(line, Meaning::Relation(relation)));
         }
         for (name, words) in &file.parts {
             let part = part_of(name).expect("a part");
@@ -478,8 +489,8 @@ impl Lexicon {
         }
         for verb in &file.verb {
             let sense = sense_of(&verb.sense).expect("a sense");
-            for phrase in &verb.words {
-                let words = split(phrase);
+            for phrase in verb.words.iter().flat_map(|line| spelled(line)) {
+                let words = split(&phrase);
                 let bends = words.iter().position(|word| word.ends_with('+')).unwrap_or(0);
                 let Some(base) = words.get(bends).map(|word| word.trim_end_matches('+').to_owned()) else { continue };
                 for (word, form) in forms(&base, &file.irregular) {
@@ -488,7 +499,7 @@ impl Lexicon {
                     lexicon.add(&bent.join(" "), Meaning::Verb(sense, form));
                 }
             }
-            verb.fixed.iter().for_each(|phrase| lexicon.add(phrase, Meaning::Verb(sense, Form::Past)));
+            verb.fixed.iter().for_each(|line| lexicon.add_all(line, Meaning::Verb(sense, Form::Past)));
         }
         for (words, progress) in [
             (&file.begun.real, Progress::Real),
@@ -505,6 +516,11 @@ impl Lexicon {
             phrases.sort_by_key(|phrase| std::cmp::Reverse(phrase.rest.len()));
         }
         lexicon
+    }
+
+    /// All phrases of a line.
+    fn add_all(&mut self, line: &str, meaning: Meaning) {
+        spelled(line).iter().for_each(|phrase| self.add(phrase, meaning));
     }
 
     fn add(&mut self, phrase: &str, meaning: Meaning) {
@@ -576,7 +592,8 @@ impl Lexicon {
 }
 
 fn lists<T: Copy>(map: &BTreeMap<T, Vec<String>>) -> Vec<(Vec<String>, T)> {
-    map.iter().flat_map(|(value, phrases)| phrases.iter().map(|phrase| (split(phrase), *value))).collect()
+    let phrases = |lines: &[String]| lines.iter().flat_map(|line| spelled(line)).collect::<Vec<_>>();
+    map.iter().flat_map(|(value, lines)| phrases(lines).into_iter().map(|phrase| (split(&phrase), *value))).collect()
 }
 
 /// Which of these are named, each once, in the order of their first words.
@@ -660,6 +677,14 @@ mod tests {
         for phrase in verbs.flat_map(|verb| verb["words"].as_array().unwrap()).filter_map(|phrase| phrase.as_str()) {
             let first = phrase.split(' ').next().unwrap();
             assert!(!past.contains(&first), "{phrase}");
+        }
+    }
+
+    #[test]
+    fn a_line_may_stand_for_several_phrases() {
+        assert_eq!(spelled("go (over/across) to * lane"), ["go over to * lane", "go across to * lane", "go to * lane"]);
+        for text in ["went across to the left lane", "eased into the next lane", "pulled over to the far right lane"] {
+            assert!(matches!(verb_at_start(text), Some(Meaning::Verb(Sense::Act(Act::LaneChange), _))), "{text}");
         }
     }
 

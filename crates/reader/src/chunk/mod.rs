@@ -96,6 +96,15 @@ pub struct Piece {
 }
 
 impl Piece {
+    /// On which side it is, where it names one.
+    pub(crate) fn side(&self) -> Option<LeftRight> {
+        match (self.parts.contains(&Part::Left), self.parts.contains(&Part::Right)) {
+            (true, false) => Some(LeftRight::Left),
+            (false, true) => Some(LeftRight::Right),
+            _ => None,
+        }
+    }
+
     /// A part of which no more is said than on which side it is.
     pub(crate) fn of(part: Part) -> Self {
         Self { parts: vec![part], door: false, mirror: false, open: false, owner: None, its: false }
@@ -269,6 +278,9 @@ impl Chunker<'_> {
         if let Some(length) = self.opening(at) {
             return (Some(Chunk::Comma), length);
         }
+        if let Some((piece, length)) = self.that_of(at, before) {
+            return (Some(Chunk::Piece(piece)), length);
+        }
         if let Some((lane, length)) = self.lane(at) {
             let chunk = if self.is_partly_there(at) { Chunk::Word } else { Chunk::Lane(lane) };
             return (Some(chunk), length);
@@ -322,9 +334,50 @@ impl Chunker<'_> {
 
     /// Where somebody is, seen from somebody else.
     fn relation(&self, at: usize) -> Option<(Relation, usize)> {
+        if let Some(found) = self.side_of_its_owner(at) {
+            return Some(found);
+        }
         let found = self.lexicon.longest(self.tokens, at, |meaning| matches!(meaning, Meaning::Relation(_)));
         let Some(Found { meaning: Meaning::Relation(relation), length }) = found else { return self.in_next_lane(at) };
         (!self.is_no_relation(at, length)).then_some((relation, length))
+    }
+
+    /// "to the AV's left", "on the alley's right side": beside it, or on that side of the road. "The AV's left rear corner" is a part.
+    fn side_of_its_owner(&self, at: usize) -> Option<(Relation, usize)> {
+        let (word, street) =
+            (self.text(at), matches!(self.text(at + 2), "street" | "road" | "roadway" | "alley" | "alleyway"));
+        let length = match self.noun(at + 1) {
+            Some((noun, length)) if noun.subject && noun.occupant.is_none() => length,
+            _ if street && is_determiner(self.text(at + 1)) => 2,
+            _ => return None,
+        };
+        let side = at + 2 + length;
+        let relation = match self.text(side) {
+            "left" => Relation::Left,
+            "right" => Relation::Right,
+            _ => return None,
+        };
+        let edge = usize::from(matches!(self.text(side + 1), "side" | "edge"));
+        let end = side + 1 + edge;
+        let touched = || (self.first.max(at.saturating_sub(2))..at).any(|at| self.touches_at(at));
+        let place = match word {
+            "to" | "from" | "off" => true,
+            "on" | "at" | "along" => {
+                if street {
+                    edge == 1
+                } else {
+                    edge == 0 && !touched()
+                }
+            }
+            _ => false,
+        };
+        (place && self.text(side - 1) == "'s" && self.part(end).is_none()).then_some((relation, end - at))
+    }
+
+    /// Whether a verb of touching stands here.
+    fn touches_at(&self, at: usize) -> bool {
+        let touches = |meaning| matches!(meaning, Meaning::Verb(Sense::Contact | Sense::RearEnd, _));
+        self.lexicon.longest(self.tokens, at, touches).is_some()
     }
 
     /// "in the adjacent leftmost turn only lane": on the left, and what lane it is stands behind.
@@ -408,7 +461,17 @@ impl Chunker<'_> {
         let (last, behind) = (self.text(at + length - 1), at + length);
         // "on its left side mirror".
         let mirror = last == "side" && matches!(self.text(behind), "mirror" | "mirrors" | "door" | "doors" | "window");
-        let side = matches!(last, "left" | "right") || mirror;
+        let side = matches!(last, "left" | "right" | "rear") || mirror;
+        // "at the rear of its passenger side".
+        let own = behind + usize::from(is_determiner(self.text(behind)));
+        let of_a_side = last == "of"
+            && own > behind
+            && self.part(own + usize::from(self.text(own) == "own")).is_some_and(|(part, length)| {
+                matches!(part, Part::Left | Part::Right) && (length > 1 || self.text(own + length) == "side")
+            });
+        if of_a_side && matches!(self.text(behind - 2), "rear" | "back" | "front") {
+            return true;
+        }
         let part = self
             .part(behind)
             .is_some_and(|(part, _)| part != Part::Noun || !matches!(self.text(behind), "side" | "half"));

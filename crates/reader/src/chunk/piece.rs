@@ -1,7 +1,7 @@
 //! Parts of vehicles: "the rear bumper of the van", "its left side mirror".
 
 use super::noun::can_own;
-use super::{Chunker, DETERMINERS, Noun, Piece};
+use super::{Chunk, Chunker, DETERMINERS, Noun, Piece, Placed};
 use crate::lexicon::{Meaning, Part};
 use crate::token::TokenKind;
 
@@ -34,7 +34,12 @@ impl Chunker<'_> {
         let determined = DETERMINERS.contains(&self.text(first));
         let its = matches!(self.text(first), "its" | "their" | "his" | "her");
         let piece = Piece { parts: Vec::new(), door: false, mirror: false, open: false, owner: None, its };
-        let mut draft = Draft { piece, at: first + usize::from(determined), nouns: 0 };
+        // "its right lane" is a lane of the road.
+        if determined && self.lane(first + 1).is_some() {
+            return None;
+        }
+        let own = usize::from(determined && self.text(first + 1) == "own");
+        let mut draft = Draft { piece, at: first + usize::from(determined) + own, nouns: 0 };
         // "a van, left of it, turned": where it was.
         let aside = matches!(self.text(first), "left" | "right") && self.text(first + 1) == "of";
         if aside && first > self.first && self.tokens[first - 1].kind == TokenKind::Mark {
@@ -63,6 +68,9 @@ impl Chunker<'_> {
             }
             _ => draft,
         };
+        let mut draft = draft;
+        self.side_told_behind(&mut draft);
+        self.end_told_behind(&mut draft);
         (self.is_sure(first, &draft) && !self.is_side_of_road(&draft)).then_some((draft.piece, draft.at - first))
     }
 
@@ -128,6 +136,61 @@ impl Chunker<'_> {
         }
     }
 
+    /// "the front bumper of the van, on the driver side,", "its rear on the passenger side": the side of an end.
+    fn side_told_behind(&self, draft: &mut Draft) {
+        let on = draft.at + usize::from(self.text(draft.at) == ",");
+        let on = on + usize::from(on > draft.at && self.text(on) == "likewise");
+        let before = (draft.at, draft.piece.parts.len());
+        if self.text(on) == "on" {
+            draft.at = on;
+            self.on_the_side(draft);
+            let sided = draft.piece.parts.len() > before.1 && self.text(draft.at - 1) == "side";
+            if !sided || self.text(draft.at) == "of" {
+                draft.at = before.0;
+                draft.piece.parts.truncate(before.1);
+            }
+        }
+    }
+
+    /// "its left side near the rear", "the right side of the van, at the front,": the end of a side.
+    fn end_told_behind(&self, draft: &mut Draft) {
+        let at = draft.at + usize::from(self.text(draft.at) == ",");
+        let ends = draft.piece.parts.iter().any(|part| matches!(part, Part::Front | Part::Rear));
+        let sided = draft.piece.parts.iter().any(|part| matches!(part, Part::Left | Part::Right));
+        let near = matches!(self.text(at), "at" | "near" | "toward" | "towards")
+            && matches!(self.text(at + 1), "the" | "its" | "their");
+        if ends || !sided || !near {
+            return;
+        }
+        let Some((part @ (Part::Front | Part::Rear), length)) = self.part(at + 2) else { return };
+        let mut end = at + 2 + length;
+        while let Some((Part::Noun, length)) = self.part(end) {
+            end += length;
+        }
+        if self.text(end) != "of" {
+            draft.add(part);
+            draft.at = end;
+        }
+    }
+
+    /// "its bumper touched that of the van": the same part of another.
+    pub(super) fn that_of(&self, at: usize, before: &[Placed]) -> Option<(Piece, usize)> {
+        if self.text(at) != "that" || self.text(at + 1) != "of" {
+            return None;
+        }
+        let named = before.iter().rev().find_map(|placed| match &placed.chunk {
+            Chunk::Piece(piece) => Some(piece),
+            _ => None,
+        })?;
+        let (owner, length) = self.noun(at + 2).filter(|(noun, _)| noun.subject || noun.kind.is_some_and(can_own))?;
+        let unsided = |part: &Part| !matches!(part, Part::Left | Part::Right);
+        let parts = named.parts.iter().copied().filter(unsided).collect();
+        let piece = Piece { parts, open: false, owner: Some(owner), its: false, ..named.clone() };
+        let mut draft = Draft { piece, at: at + 2 + length, nouns: 1 };
+        self.side_told_behind(&mut draft);
+        Some((draft.piece, draft.at - at))
+    }
+
     /// The first word of the owner: "the rear of both the van and the bus" has one, the first.
     fn owner_at(&self, draft: &Draft) -> usize {
         let behind = draft.at + 1;
@@ -166,15 +229,36 @@ impl Chunker<'_> {
             if self.text(draft.at) == "'s" && self.part(draft.at + 1).is_some() {
                 self.further_parts(draft.at + 1, &mut draft);
             }
-        } else if matches!(self.text(behind), "its" | "their") && self.part(behind + 1).is_some() {
+        } else if let ("its" | "their", own) =
+            (self.text(behind), behind + 1 + usize::from(self.text(behind + 1) == "own"))
+            && self.part(own).is_some()
+        {
             draft.piece.its = true;
+            self.further_parts(own, &mut draft);
+        } else if self.text(behind) == "the" && self.is_end(&draft) && self.side_at(behind + 1).is_some() {
+            // "the rear of the left side of the van".
             self.further_parts(behind + 1, &mut draft);
+            if self.text(draft.at) == "of" {
+                return self.of_whom(draft);
+            }
         } else if self.text(behind) == "it" {
             (draft.piece.its, draft.at) = (true, behind + 1);
         } else if self.text(draft.at) == "of" {
             return None;
         }
         Some(draft)
+    }
+
+    /// Whether it is an end of a vehicle, of which no side is told.
+    fn is_end(&self, draft: &Draft) -> bool {
+        draft.piece.parts.iter().any(|part| matches!(part, Part::Front | Part::Rear))
+            && !draft.piece.parts.iter().any(|part| matches!(part, Part::Left | Part::Right))
+    }
+
+    /// A side of a vehicle that is named here: "left side", "driver side".
+    fn side_at(&self, at: usize) -> Option<Part> {
+        let (part, length) = self.part(at).filter(|(part, _)| matches!(part, Part::Left | Part::Right))?;
+        (self.text(at + length - 1) == "side" || self.text(at + length) == "side").then_some(part)
     }
 
     fn further_parts(&self, at: usize, draft: &mut Draft) {

@@ -5,19 +5,19 @@ use crate::token::{Token, TokenKind, number};
 use recrash_model::account::{Compass, LaneWord};
 
 /// Most tokens of the name of a lane before "lane".
-const LONGEST_LANE_NAME: usize = 7;
+const LONGEST_LANE_NAME: usize = 9;
 
 /// "partially in one lane and partially in another one": both stand so near. [tokens]
 const BOTH_WITHIN: usize = 12;
 
-const LEFT: &[&str] = &["left", "leftmost", "inside", "fast"];
-const RIGHT: &[&str] = &["right", "rightmost", "outside", "slow"];
+const LEFT: &[&str] = &["left", "leftmost", "inside", "fast", "inner", "innermost"];
+const RIGHT: &[&str] = &["right", "rightmost", "outside", "slow", "outer", "outermost"];
 const BUS: &[&str] = &["bus", "transit"];
 const TURN: &[&str] = &["turn", "turning"];
 
 /// What the words before "lane" make of it: the first whose words are all there.
 const LANES: [(&[&[&str]], LaneWord); 16] = [
-    (&[&["bike", "bicycle"]], LaneWord::Bike),
+    (&[&["bike", "bicycle", "cycle"]], LaneWord::Bike),
     // "the rightmost bus and turn lane": who else may use it says where it is.
     (&[BUS, TURN, LEFT], LaneWord::LeftTurn),
     (&[BUS, TURN, RIGHT], LaneWord::RightTurn),
@@ -25,7 +25,7 @@ const LANES: [(&[&[&str]], LaneWord); 16] = [
     (&[BUS, &["rightmost"]], LaneWord::Right),
     (&[BUS], LaneWord::Bus),
     (&[&["opposing", "opposite", "oncoming"]], LaneWord::Opposing),
-    (&[&["parking", "curb"]], LaneWord::Curb),
+    (&[&["parking", "curb", "curbside"]], LaneWord::Curb),
     (&[&["emergency"]], LaneWord::Shoulder),
     // "the middle shared turn lane", "the center two-way turn lane": between both directions.
     (&[TURN, &["center", "middle", "centre", "shared", "way"]], LaneWord::LeftTurn),
@@ -47,6 +47,15 @@ fn in_lane_names(word: &str) -> bool {
         || matches!(word, "opposing" | "opposite" | "oncoming" | "designated" | "emergency" | "slow" | "fast")
         || matches!(word, "passing" | "number" | "second" | "of" | "and" | "two" | "three" | "four")
         || matches!(word, "shared" | "way" | "vehicle" | "transit" | "expanded" | "additional" | "new")
+        || matches!(word, "inner" | "innermost" | "outer" | "outermost" | "curbside" | "cycle" | "exit" | "express")
+        || matches!(word, "deceleration" | "acceleration" | "auxiliary" | "general" | "purpose" | "side")
+        || matches!(word, "singular" | "single" | "sole" | "lone" | "reserved" | "own")
+}
+
+/// Words with which the name of a lane does not begin.
+fn only_inside_lane_names(word: &str) -> bool {
+    matches!(word, "and" | "of" | "two" | "three" | "four" | "way" | "vehicle" | "side" | "own" | "purpose")
+        || matches!(word, "single" | "new" | "additional")
 }
 
 /// So many lanes.
@@ -169,26 +178,144 @@ impl Chunker<'_> {
             return Some(numbered);
         }
         let two_way = word == "two" && self.text(at + 1) == "way";
-        if !in_lane_names(word)
-            || !two_way && matches!(word, "and" | "of" | "two" | "three" | "four" | "way" | "vehicle")
-        {
+        if matches!(word, "lane" | "lanes") {
+            return self.told_behind_lane(at).map(|(lane, length)| (lane, 1 + length));
+        }
+        if let Some(one) = self.one_of_lanes(at) {
+            return Some(one);
+        }
+        if !in_lane_names(word) || !two_way && only_inside_lane_names(word) {
             return None;
         }
-        let end = (at..self.tokens.len().min(at + LONGEST_LANE_NAME)).find(|&at| {
-            let inside = in_lane_names(self.text(at)) || self.compass(at).is_some();
-            !inside && self.tokens[at].kind != TokenKind::Number
+        let end = (at..self.tokens.len().min(at + LONGEST_LANE_NAME)).find(|&behind| {
+            let inside = in_lane_names(self.text(behind)) || self.compass(behind).is_some();
+            !inside && self.tokens[behind].kind != TokenKind::Number && !self.is_of_them(at, behind)
         });
         let end = end.unwrap_or(self.tokens.len().min(at + LONGEST_LANE_NAME));
-        if !matches!(self.text(end), "lane" | "lanes") {
+        let has = |words: &[&str]| (at..end).any(|at| words.contains(&self.text(at)));
+        let pocket = matches!(self.text(end), "pocket" | "bay") && has(TURN);
+        if !pocket && !matches!(self.text(end), "lane" | "lanes") {
             return None;
         }
-        let has = |words: &[&str]| (at..end).any(|at| words.contains(&self.text(at)));
+        if let Some((lane, length)) = self.told_behind_lane(end) {
+            return Some((lane, end + 1 + length - at));
+        }
         // "the left adjacent lane" is a place beside somebody, and is told as a relation.
         if has(&["adjacent", "next", "neighboring"]) {
             return None;
         }
         let (_, lane) = LANES.iter().find(|(names, _)| names.iter().all(|words| has(words)))?;
         Some((*lane, end + 1 - at))
+    }
+
+    /// "the rightmost of the three lanes", "the right one of two lanes": small words between.
+    fn is_of_them(&self, first: usize, at: usize) -> bool {
+        let count = |at: usize| {
+            number(self.text(at)).is_some()
+                || matches!(
+                    self.text(at),
+                    "turn"
+                        | "through"
+                        | "travel"
+                        | "designated"
+                        | "dedicated"
+                        | "northbound"
+                        | "southbound"
+                        | "eastbound"
+                        | "westbound"
+                )
+        };
+        // "to the left of the two lanes" is a place.
+        let place = first >= 2 && self.text(first - 1) == "the" && self.text(first - 2) == "to";
+        match self.text(at) {
+            "the" | "its" | "these" | "those" => !place && self.text(at - 1) == "of" && count(at + 1),
+            "one" => self.text(at + 1) == "of",
+            _ => false,
+        }
+    }
+
+    /// "The street has three lanes, and it was in the right one": one of those that were named before.
+    fn one_of_lanes(&self, at: usize) -> Option<(LaneWord, usize)> {
+        let word = self.text(at);
+        let named = at >= 2
+            && matches!(self.text(at - 1), "the" | "its")
+            && matches!(self.text(at - 2), "in" | "within" | "using")
+            && (self.first..at).any(|at| self.text(at) == "lanes");
+        // "in the one farthest right".
+        if let (true, "one", Some((lane, length))) = (named, word, self.told_behind_lane(at)) {
+            return Some((lane, 1 + length));
+        }
+        if !named || self.text(at + 1) != "one" || self.text(at + 2) == "of" {
+            return None;
+        }
+        let side = |words: &[&str]| words.contains(&word);
+        let lane = match () {
+            () if side(LEFT) => LaneWord::Left,
+            () if side(RIGHT) => LaneWord::Right,
+            () if side(&["center", "middle", "centre"]) => LaneWord::Center,
+            () => return None,
+        };
+        Some((lane, 2))
+    }
+
+    /// What the words behind "lane" make of it, and their tokens: "farthest to the left", "for left turns", "2 of 3".
+    fn told_behind_lane(&self, lane: usize) -> Option<(LaneWord, usize)> {
+        let behind = lane + 1;
+        let side_at = |at: usize| match self.text(at) {
+            "left" => Some(LaneWord::Left),
+            "right" => Some(LaneWord::Right),
+            _ => None,
+        };
+        let the = |at: usize| at + usize::from(self.text(at) == "the");
+        match self.text(behind) {
+            "farthest" | "furthest" | "nearest" | "closest" => {
+                let to = behind + 1 + usize::from(matches!(self.text(behind + 1), "to" | "on"));
+                let side = the(to);
+                // "the lane closest to the curb".
+                let near = matches!(self.text(behind), "nearest" | "closest");
+                let lane = match self.text(side) {
+                    "curb" | "sidewalk" | "shoulder" if near => Some(LaneWord::Right),
+                    "median" | "centerline" if near => Some(LaneWord::Left),
+                    _ => side_at(side),
+                }?;
+                let end = side + 1 + usize::from(self.text(side + 1) == "side");
+                (self.text(end) != "of").then_some((lane, end - behind))
+            }
+            "on" | "at" if self.text(behind + 1) == "the" && self.text(behind + 2) == "far" => {
+                Some((side_at(behind + 3)?, 4))
+            }
+            "second" | "2nd" if self.text(behind + 1) == "from" => {
+                let side = the(behind + 2);
+                side_at(side).map(|_| (LaneWord::Center, side + 1 - behind))
+            }
+            "for" | "reserved" | "designated" | "dedicated" | "meant" | "marked" | "intended" => self.lane_for(behind),
+            _ => {
+                let at = behind + usize::from(self.text(behind) == "number");
+                let many = if self.text(at + 1) == "of" { count(self.text(at + 2)) } else { None };
+                let lane = of_so_many(count(self.text(at))?, Some(many?))?;
+                Some((lane, at + 3 - behind))
+            }
+        }
+    }
+
+    /// "(a lane) reserved for right turns", "for turning left", "for parking".
+    fn lane_for(&self, at: usize) -> Option<(LaneWord, usize)> {
+        let to = at + usize::from(self.text(at) != "for");
+        if !matches!(self.text(to), "for" | "to") {
+            return None;
+        }
+        let from = to + 1 + usize::from(self.text(to + 1) == "making");
+        let (one, two) = (self.text(from), self.text(from + 1));
+        let (lane, words) = match (one, two) {
+            ("left", "turn" | "turns" | "turning") | ("turning" | "turns", "left") => (LaneWord::LeftTurn, 2),
+            ("right", "turn" | "turns" | "turning") | ("turning" | "turns", "right") => (LaneWord::RightTurn, 2),
+            ("parking", _) => (LaneWord::Curb, 1),
+            ("bicycles" | "cyclists" | "bikes" | "bicyclists", _) => (LaneWord::Bike, 1),
+            ("buses", _) => (LaneWord::Bus, 1),
+            ("oncoming" | "opposing", "traffic" | "vehicles") => (LaneWord::Opposing, 2),
+            _ => return None,
+        };
+        Some((lane, from + words - at))
     }
 
     /// "partially in the left lane and partially in the parking lane": in neither alone, of a lane and a strip.
@@ -209,6 +336,16 @@ impl Chunker<'_> {
 
     /// "the second lane from the right", "the second from the right lane": neither the first nor the last.
     fn counted_lane(&self, at: usize) -> Option<(LaneWord, usize)> {
+        // "the first lane from the right".
+        if let ("first" | "1st", "lane", "from") = (self.text(at), self.text(at + 1), self.text(at + 2)) {
+            let side = at + 3 + usize::from(self.text(at + 3) == "the");
+            let lane = match self.text(side) {
+                "left" => LaneWord::Left,
+                "right" => LaneWord::Right,
+                _ => return None,
+            };
+            return Some((lane, side + 1 - at));
+        }
         if !matches!(self.text(at), "second" | "third" | "fourth" | "2nd" | "3rd" | "4th" | "number") {
             return None;
         }

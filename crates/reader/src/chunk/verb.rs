@@ -373,11 +373,31 @@ impl Chunker<'_> {
         if turns(sense) && (lane && last == "turn" || two) {
             return others(&|sense| !turns(sense));
         }
+        // "moved back into its lane", "came back from there": no way backward.
+        let reverses = |sense| sense == Sense::Act(Act::Reverse);
+        if reverses(sense) && last == "back" && self.comes_back(at, behind) {
+            return others(&|sense| !reverses(sense));
+        }
+        // "pulled into the parking lane": it parks there.
+        let over = |sense| sense == Sense::Act(Act::LaneChange);
+        if over(sense) && self.text(at).starts_with("pull") && (at..behind).any(|at| self.text(at) == "parking") {
+            return others(&|sense| !over(sense));
+        }
         // "drove against traffic laws" is no way.
         if wrong_way(sense) && last == "traffic" && super::is_of_traffic(self.text(behind)) {
             return others(&|sense| !wrong_way(sense));
         }
         Some(found)
+    }
+
+    /// "went back to the left", "came back over": to where it had been.
+    fn comes_back(&self, at: usize, behind: usize) -> bool {
+        const GOES: [&str; 9] = ["go", "went", "gone", "com", "cam", "mov", "drift", "eas", "driv"];
+        GOES.iter().any(|stem| self.text(at).starts_with(stem))
+            && matches!(
+                self.text(behind),
+                "to" | "toward" | "towards" | "over" | "in" | "into" | "onto" | "on" | "out" | "from" | "and" | "for"
+            )
     }
 
     /// Whether the words behind "into" or "onto" name a place: "the roadway", "the van's lane".

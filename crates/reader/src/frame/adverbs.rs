@@ -61,10 +61,8 @@ pub(super) fn apply(frames: &mut Vec<Frame>, tokens: &[Token], sentences: &[Sent
         } else if against_traffic(frame, &words) {
             frames[number].sense = Sense::Act(Act::WrongWay);
         }
-        if let (true, None, Some(part)) =
-            (frames[number].is_contact(), &frames[number].with, own_end(&frames[number], &words))
-        {
-            frames[number].with = Some(Piece::of(part));
+        if frames[number].is_contact() && frames[number].with.is_none() {
+            frames[number].with = own_part(&frames[number], &words);
         }
         if begins_to_pass(frames, number, tokens) {
             let taken = &frames[number];
@@ -84,15 +82,21 @@ pub(super) fn apply(frames: &mut Vec<Frame>, tokens: &[Token], sentences: &[Sent
     }
 }
 
-/// "drove its front end into", "swung its tail into": the end that touches stands within the verb.
-fn own_end(frame: &Frame, words: &[&str]) -> Option<Part> {
+/// "drove its front end into", "scraped its right side along": the part that touches stands within the verb.
+fn own_part(frame: &Frame, words: &[&str]) -> Option<Piece> {
     let verb = &words[..frame.end.saturating_sub(frame.first).min(words.len())];
-    let into = verb.iter().position(|word| matches!(*word, "into" | "against"))?;
-    verb[..into].windows(2).filter(|pair| matches!(pair[0], "its" | "their")).find_map(|pair| match pair[1] {
+    let into = verb.iter().position(|word| matches!(*word, "into" | "against" | "along" | "on" | "past" | "down"))?;
+    let own = verb[..into].iter().position(|word| matches!(*word, "its" | "their"))?;
+    let mut parts = verb[own + 1..into].iter().filter_map(|word| match *word {
         "front" | "nose" => Some(Part::Front),
         "rear" | "tail" => Some(Part::Rear),
+        "left" | "driver" => Some(Part::Left),
+        "right" | "passenger" => Some(Part::Right),
         _ => None,
-    })
+    });
+    let mut piece = Piece::of(parts.next()?);
+    piece.parts.extend(parts);
+    Some(piece)
 }
 
 /// The token behind the words of a frame: where the next one begins, or the sentence ends.

@@ -193,7 +193,8 @@ impl Parser<'_> {
             _ => false,
         };
         // "going by it on its left a cyclist slipped": whose left it is stands there.
-        let possessed = self.tokens[placed.first..placed.end].iter().any(|token| token.text == "its");
+        let possessed =
+            self.tokens[placed.first..placed.end].iter().any(|token| matches!(token.text.as_str(), "its" | "'s"));
         // "From an alley on the left a van came".
         let indefinite = matches!(next, Some(Chunk::Noun(noun)) if noun.article == crate::chunk::Article::Indefinite);
         let side = matches!(self.tokens[placed.end - 1].text.as_str(), "left" | "right" | "ahead");
@@ -267,7 +268,10 @@ impl Parser<'_> {
             governs,
         ) && struck(&self.frames[frame])
             && self.tokens[placed.first].text == "on"
-            && (self.tokens[placed.end - 1].text == "side" || possessed && self.frames[frame].passive)
+            && (self.tokens[placed.end - 1].text == "side"
+                || possessed
+                    && (self.frames[frame].passive
+                        || self.tokens.get(placed.end).is_some_and(|next| next.text == "side")))
         {
             self.frames[frame].on = Some(Piece::of(part));
             self.frames[frame].end = placed.end;
@@ -414,7 +418,6 @@ impl Parser<'_> {
         // "moved left": over.
         if let Some(frame) = carry.frame
             && self.frames[frame].sense == Sense::Act(Act::Follow)
-            && self.frames[frame].who != Some(SUBJECT)
             && ["mov", "slid", "swung"].iter().any(|stem| self.tokens[self.frames[frame].first].text.starts_with(stem))
         {
             self.frames[frame].sense = Sense::Act(Act::Drift);
@@ -428,7 +431,13 @@ impl Parser<'_> {
     }
 
     pub(super) fn lane(&mut self, lane: LaneWord, placed: &Placed, carry: &mut Carry) {
-        let into = matches!(carry.preposition, Some("into" | "onto" | "to")) || carry.to;
+        // "kept to the right lane": it is in it.
+        let kept = carry.frame.is_some_and(|frame| {
+            ["keep", "kept", "stay", "stick", "stuck"]
+                .iter()
+                .any(|stem| self.tokens[self.frames[frame].first].text.starts_with(stem))
+        });
+        let into = (matches!(carry.preposition, Some("into" | "onto" | "to")) || carry.to) && !kept;
         let from = matches!(carry.preposition, Some("from" | "out"));
         // "was part way across the bicycle lane": not its own.
         if matches!(carry.preposition, Some("across" | "over" | "past" | "between")) {
@@ -507,7 +516,9 @@ impl Parser<'_> {
         let in_it = before == "in" && (between_them || passing || ["spot", "space"].contains(&noun));
         let between = |back: &usize| ["the", "rightmost", "leftmost", "right", "left", ",", "-"].contains(&text(*back));
         let behind = (1..6).take_while(between).count() + 1;
-        in_it || text(behind) == "to" && ["adjacent", "next"].contains(&text(behind + 1))
+        // "one lane to the left of the rightmost lane".
+        let beside = text(1) == "the" && text(2) == "of" && matches!(text(3), "left" | "right");
+        in_it || beside || text(behind) == "to" && ["adjacent", "next"].contains(&text(behind + 1))
     }
 
     /// "partially in the left lane and partially in the AV's lane": between the two, and so in that of the subject vehicle no less.

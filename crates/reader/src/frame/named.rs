@@ -163,7 +163,7 @@ impl Parser<'_> {
             return Some(last.actor);
         }
         if piece.its {
-            return Some(self.its(carry));
+            return Some(self.part_behind_object(carry).unwrap_or_else(|| self.its(carry)));
         }
         // "The edge of the open door touched": of whom it was opened.
         let door = if piece.door && carry.fresh { self.door_of() } else { None };
@@ -266,6 +266,10 @@ impl Parser<'_> {
         taken.object = Some(actor);
         taken.on.clone_from(&mention.piece);
         taken.end = placed.end;
+        // "went past the left side of the van".
+        if taken.sense == Sense::Act(Act::Pass) {
+            taken.side = taken.side.or(mention.piece.as_ref().and_then(Piece::side));
+        }
         let (sense, who) = (taken.sense, taken.who);
         carry.last = Some(Mention { actor, ..mention });
         (carry.governed, carry.fresh) = (false, false);

@@ -3,7 +3,8 @@
 
 use super::parser::{Carry, Mention, Parser};
 use super::row::transitive;
-use crate::chunk::{Chunk, Placed};
+use super::zone_of;
+use crate::chunk::{Chunk, Piece, Placed};
 use crate::lexicon::{Form, Progress, Relation, Sense};
 use crate::world::{Actor, SUBJECT};
 use recrash_model::account::{Act, Kind, KindGroup, LeftRight};
@@ -23,7 +24,7 @@ impl Parser<'_> {
             "behind" | "between" if self.frames[frame].sense == Sense::Act(Act::Enter) => {
                 self.frames[frame].object.get_or_insert(mention.actor);
             }
-            "onto" | "with" | "between" | "and" | "upon" | "on" | "at" | "to" | "off" => {
+            "onto" | "with" | "between" | "and" | "upon" | "on" | "at" | "along" | "near" | "to" | "off" => {
                 self.met(frame, preposition, mention, placed, carry);
             }
             "under" if self.rolls_under(frame, mention) => {
@@ -38,13 +39,15 @@ impl Parser<'_> {
                 let taken = &mut self.frames[frame];
                 taken.sense = Sense::Act(Act::Pass);
                 (taken.object, taken.end) = (Some(mention.actor), placed.end);
+                // "around the left side of it".
+                taken.side = taken.side.or(mention.piece.as_ref().and_then(Piece::side));
                 // "around and to the left of it": it is on the right.
                 if let (Some(SUBJECT), Some(side)) = (taken.who, taken.side) {
                     let other = if side == LeftRight::Left { Relation::Right } else { Relation::Left };
                     self.note(mention.actor, other);
                 }
             }
-            "of" | "for" | "in" | "through" | "around" | "past" | "across" | "from" | "near" | "under" | "over" => {
+            "of" | "for" | "in" | "through" | "around" | "past" | "across" | "from" | "under" | "over" => {
                 let taken = &mut self.frames[frame];
                 if taken.object.is_none() && transitive(taken.sense) && !taken.is_contact() {
                     taken.object = Some(mention.actor);
@@ -61,8 +64,10 @@ impl Parser<'_> {
             taken.sense,
             Sense::Act(Act::Follow | Act::SetOff | Act::Drift | Act::Accelerate | Act::Pass | Act::PullOut)
         );
-        let by = self.world.actors[mention.actor].kind.is_some_and(|kind| kind.group() != KindGroup::Object);
-        moves && by && taken.who.is_some_and(|who| who != mention.actor) && mention.piece.is_none()
+        let rides = |kind: Kind| kind.group() != KindGroup::Object;
+        let by = mention.actor == SUBJECT || self.world.actors[mention.actor].kind.is_some_and(rides);
+        let whole = mention.piece.as_ref().is_none_or(|piece| piece.side().is_some());
+        moves && by && taken.who.is_some_and(|who| who != mention.actor) && whole
     }
 
     /// "was towed by a truck".
@@ -170,6 +175,11 @@ impl Parser<'_> {
             taken.on.clone_from(&mention.piece);
             taken.end = placed.end;
             self.world.actors[actor].announced |= headline && actor != SUBJECT;
+        } else if contact && preposition == "with" && taken.who == Some(actor) && !taken.passive {
+            // "struck its rear with the front of the van".
+            let struck = taken.object.is_some() || taken.on.is_some();
+            let piece = mention.piece.as_ref().filter(|piece| struck && zone_of(piece).is_some());
+            taken.with = piece.cloned().or(taken.with.take());
         } else if contact && taken.object == Some(actor) && taken.on.is_none() {
             taken.on.clone_from(&mention.piece);
             taken.end = placed.end;

@@ -56,6 +56,17 @@ impl Parser<'_> {
         }
     }
 
+    /// "struck the AV on its left rear corner": of whom it struck. "struck the AV with its front": of who strikes.
+    pub(super) fn part_behind_object(&self, carry: &Carry) -> Option<Actor> {
+        let frame = carry.frame.map(|frame| &self.frames[frame]).filter(|frame| frame.is_contact() && !carry.fresh)?;
+        let (who, object) = (frame.who?, frame.object.filter(|object| frame.who != Some(*object))?);
+        match carry.preposition? {
+            "with" if !frame.passive => Some(who),
+            "on" | "at" | "along" | "in" | "near" if frame.on.is_none() => Some(object),
+            _ => None,
+        }
+    }
+
     /// "A van struck the AV while it waited": who stands is the one that was struck.
     pub(super) fn waits_struck(&self, all: &[Placed], at: usize, carry: &Carry) -> Option<Actor> {
         let stands = all[at + 1..].iter().take(2).any(|placed| {

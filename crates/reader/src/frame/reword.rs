@@ -17,6 +17,8 @@ pub(super) fn apply(tokens: &mut Vec<Token>) {
     name_aliases(tokens);
     stand_still(tokens);
     turn_meanwhile(tokens);
+    use_lanes(tokens);
+    name_pickups_and_cabs(tokens);
     drive_as_company(tokens);
     part_owners(tokens);
 }
@@ -363,6 +365,39 @@ fn turn_meanwhile(tokens: &mut [Token]) {
         "turning".clone_into(&mut tokens[from].text);
         if let Some(side) = side {
             tokens[from + 1].text = side;
+        }
+    }
+}
+
+/// "a pick-up", "another cab": a pickup and a taxi, where the words behind do not make a place or an act of it. The cab of a truck is none.
+fn name_pickups_and_cabs(tokens: &mut Vec<Token>) {
+    const PLACES: [&str; 12] =
+        ["location", "point", "area", "zone", "spot", "or", "site", "passengers", "and", "request", "time", "of"];
+    let truck = tokens.iter().any(|token| matches!(token.text.as_str(), "truck" | "semi" | "tractor"));
+    let cab = tokens.windows(2).any(|pair| matches!(pair[0].text.as_str(), "a" | "another") && pair[1].text == "cab");
+    for token in tokens.iter_mut().filter(|token| cab && !truck && token.text == "cab") {
+        "taxi".clone_into(&mut token.text);
+    }
+    for at in (1..tokens.len().saturating_sub(2)).rev() {
+        let named = matches!(tokens[at - 1].text.as_str(), "a" | "the" | "another" | "that")
+            || crate::chunk::is_colour(&tokens[at - 1].text);
+        let one_word =
+            tokens[at].text == "pick" && tokens[at + 1].text == "up" && tokens[at + 1].start == tokens[at].end + 1;
+        if named && one_word && !PLACES.contains(&tokens[at + 2].text.as_str()) {
+            "pickup".clone_into(&mut tokens[at].text);
+            tokens[at].end = tokens[at + 1].end;
+            tokens.remove(at + 1);
+        }
+    }
+}
+
+/// "passed it using the bike lane": in that lane.
+fn use_lanes(tokens: &mut [Token]) {
+    for at in 0..tokens.len().saturating_sub(2) {
+        let determined = matches!(tokens[at + 1].text.as_str(), "the" | "a" | "its" | "their");
+        let lane = tokens[at + 2..].iter().take(LANE_WORDS).take_while(|token| token.kind == TokenKind::Word);
+        if tokens[at].text == "using" && determined && lane.into_iter().any(|token| token.text == "lane") {
+            "in".clone_into(&mut tokens[at].text);
         }
     }
 }

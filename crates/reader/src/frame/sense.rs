@@ -8,11 +8,13 @@ use crate::chunk::Chunk;
 use crate::lexicon::{Form, Occupant, Progress, Sense};
 use crate::token::{Token, TokenKind};
 use crate::world::SUBJECT;
-use recrash_model::account::{Act, Compass, LeftRight};
+use recrash_model::account::{Act, Compass, KindGroup, LeftRight};
 
 type Rule = fn(&Parser<'_>, &Spoken<'_>, &Carry) -> Option<Sense>;
 
-const SENSES: [Rule; 22] = [
+const SENSES: [Rule; 24] = [
+    pulls_up_to,
+    lies_on_its_side,
     stands_backed_up,
     remains_so,
     is_ridden,
@@ -122,6 +124,28 @@ fn tries_to_avoid(parser: &Parser<'_>, verb: &Spoken<'_>, carry: &Carry) -> Opti
 fn carry_first(parser: &Parser<'_>, verb: &Spoken<'_>) -> usize {
     let before = &parser.tokens[..verb.placed().first];
     before.iter().rposition(|token| token.text == ".").map_or(0, |at| at + 1)
+}
+
+/// "pulled up to the van ahead": it came near. "Pulled up to the curb" is another thing.
+fn pulls_up_to(parser: &Parser<'_>, verb: &Spoken<'_>, _carry: &Carry) -> Option<Sense> {
+    let words = &parser.tokens[verb.placed().first..verb.placed().end];
+    let up = words.len() == 3 && words[0].text.starts_with("pull") && words[1].text == "up" && words[2].text == "to";
+    let somebody = match verb.next()? {
+        Chunk::Noun(noun) => noun.subject || noun.kind.is_some_and(|kind| kind.group() != KindGroup::Object),
+        Chunk::Piece(_) | Chunk::Pronoun => true,
+        _ => false,
+    };
+    (up && somebody && verb.sense == Sense::Act(Act::PullOver)).then_some(Sense::Approach)
+}
+
+/// "The motorcycle came to rest on its right side": it touches nobody.
+fn lies_on_its_side(parser: &Parser<'_>, verb: &Spoken<'_>, _carry: &Carry) -> Option<Sense> {
+    let placed = verb.placed();
+    let word = |at: usize| parser.tokens.get(placed.end + at).map_or("", |token| token.text.as_str());
+    let rests =
+        parser.tokens[placed.first..placed.end].windows(2).any(|pair| pair[0].text == "rest" && pair[1].text == "on");
+    let own = word(0) == "its" && (word(1) == "side" || word(2) == "side" || matches!(word(1), "roof" | "top"));
+    (verb.sense == Sense::Contact && rests && own).then_some(Sense::Other)
 }
 
 /// "traffic was backed up" stands.
