@@ -408,7 +408,7 @@ impl Chunker<'_> {
             "no" if (self.text(at - 1), self.text(at + 1)) == ("that", "part") => Chunk::Not,
             "not" | "never" | "didn" | "wasn" | "couldn" | "without" | "unable" | "nor" | "neither" | "avoid"
             | "avoiding" | "avoided" => Chunk::Not,
-            "fail" | "failed" | "failing" | "fails" | "refused" => Chunk::Not,
+            "fail" | "failed" | "failing" | "fails" | "refused" | "omitted" | "neglected" => Chunk::Not,
             "left" | "leftward" | "leftwards" => Chunk::Side(LeftRight::Left),
             "right" | "rightward" | "rightwards" => Chunk::Side(LeftRight::Right),
             _ => match PREPOSITIONS.iter().find(|known| **known == word) {
@@ -449,7 +449,7 @@ impl Chunker<'_> {
             {
                 Some(2)
             }
-            "fail" | "failed" | "failing" | "unable" if two == "to" => Some(2),
+            "fail" | "failed" | "failing" | "unable" | "omitted" | "neglected" if two == "to" => Some(2),
             "rather" if two == "than" => Some(2),
             "instead" if two == "of" => Some(2),
             _ => None,

@@ -22,7 +22,7 @@ struct Candidate<'a> {
 }
 
 /// A phrase is no verb where one of these says so, whichever it is: their order does not matter.
-const NO_VERB: [fn(&Candidate<'_>) -> bool; 22] = [
+const NO_VERB: [fn(&Candidate<'_>) -> bool; 23] = [
     |verb| verb.is_determined(),
     |verb| verb.is_described(),
     |verb| verb.is_turn_of_a_side(),
@@ -45,6 +45,7 @@ const NO_VERB: [fn(&Candidate<'_>) -> bool; 22] = [
     |verb| verb.is_a_sliding_door(),
     |verb| verb.is_contacts_or_stop_sign(),
     |verb| verb.is_mounted_on_a_vehicle(),
+    |verb| verb.is_after_a_drop_off(),
 ];
 
 impl Candidate<'_> {
@@ -172,9 +173,16 @@ impl Candidate<'_> {
 
     /// "after a series of maneuvers", "a lane for left turn maneuvers".
     fn is_one_of_maneuvers(&self) -> bool {
-        matches!(self.word(0), "maneuver" | "maneuvers")
-            && self.is_single()
-            && matches!(self.word_before, "of" | "turn" | "turning" | "change" | "parking" | "backing" | "reversing")
+        let counted = self.word(0) == "maneuvers"
+            && matches!(
+                self.word_before,
+                "few" | "several" | "some" | "multiple" | "many" | "various" | "more" | "such"
+            );
+        matches!(self.word(0), "maneuver" | "maneuvers") && self.is_single() && (counted || self.is_kind_of_maneuver())
+    }
+
+    fn is_kind_of_maneuver(&self) -> bool {
+        matches!(self.word_before, "of" | "turn" | "turning" | "change" | "parking" | "backing" | "reversing")
     }
 
     /// "in a parking lot", "a parking space".
@@ -279,6 +287,16 @@ impl Candidate<'_> {
     /// "the stop sign", "stop signs facing the other road".
     fn is_contacts_or_stop_sign(&self) -> bool {
         self.word(0) == "contacts" || self.word(0) == "stop" && matches!(self.word(1), "sign" | "signs")
+    }
+
+    /// "stood there following a rider drop-off": after it.
+    fn is_after_a_drop_off(&self) -> bool {
+        let article = usize::from(matches!(self.behind(0), "a" | "the" | "its" | "this"));
+        let rider = usize::from(matches!(self.behind(article), "passenger" | "rider" | "customer"));
+        let event = article + rider;
+        let off = matches!((self.behind(event), self.behind(event + 1)), ("drop", "off") | ("pick", "up"));
+        let one = matches!(self.behind(event), "dropoff") || self.behind(event) == "pickup" && rider > 0;
+        self.word(0) == "following" && self.is_single() && (one || off && self.behind(event + 2) != "truck")
     }
 
     /// "climbed the curb" is a contact; a hill is climbed too.

@@ -80,9 +80,8 @@ pub(super) fn acts(reading: &Reading<'_>, actor: Actor) -> Vec<ActFact> {
             _ if in_passing => {}
             // "stopped after making a left turn": it turned first.
             Some(last)
-                if stands(last)
-                    && (is_behind_after(reading, frame, last.step as usize)
-                        || enters_as_it_stops(reading, &fact, frame, last)) =>
+                if (stands(last) || last.act == Act::Follow) && is_behind_after(reading, frame, last.step as usize)
+                    || enters_as_it_stops(reading, &fact, frame, last) =>
             {
                 let step = std::mem::replace(&mut last.step, fact.step);
                 all.insert(all.len() - 1, ActFact { step, ..fact });
@@ -626,13 +625,30 @@ pub(super) fn not_done(reading: &Reading<'_>, number: usize, frame: &Frame) -> O
     let named = Lexicon::get().features(&reading.story.tokens[first..end]);
     if named.iter().any(|(feature, ..)| *feature == RoadFeature::StopSign) {
         Some(Act::RunStop)
-    } else if named.iter().any(|(feature, ..)| *feature == RoadFeature::Signal) {
+    } else if named.iter().any(|(feature, ..)| *feature == RoadFeature::Signal)
+        || drives_in_at_red(reading, number, frame)
+    {
         Some(Act::RunRed)
     } else if frame.sense == Sense::Yield || comes_out_so(reading, number, frame) {
         Some(Act::FailToYield)
     } else {
         None
     }
+}
+
+/// "Facing a red signal, it failed to stop and drove into the intersection": the light is told before.
+fn drives_in_at_red(reading: &Reading<'_>, number: usize, frame: &Frame) -> bool {
+    let frames = &reading.story.frames;
+    let first = reading.story.sentences[frame.sentence].first;
+    let own = |other: &Frame| other.sentence == frame.sentence && other.who == frame.who;
+    let others = frames[..number].iter().any(|other| other.sentence == frame.sentence && other.who != frame.who);
+    let red = reading.story.tokens[first..frame.first]
+        .windows(2)
+        .any(|pair| pair[0].text == "red" && matches!(pair[1].text.as_str(), "light" | "signal" | "traffic" | "arrow"));
+    let enters = |other: &Frame| {
+        own(other) && other.happened() && matches!(other.act(), Some(Act::Enter | Act::Cross | Act::Turn | Act::Follow))
+    };
+    frame.act() == Some(Act::Stop) && red && !others && frames[number + 1..].iter().any(enters)
 }
 
 /// "A van left a lot and, without stopping, turned left", "turned out of an alley without first stopping": where nothing but the road calls for a

@@ -38,7 +38,7 @@ impl Contacts {
         let mut contacts = Self::default();
         if let Some(&(first, partner)) = touching.first() {
             // A headline that tells the contact is told again, in full, by the story.
-            let early = story.frames.first().map_or(0, |frame| frame.sentence);
+            let early = headline_of(story);
             // "A van rear-ended it. ... A passenger car rear-ended it": the same one, called otherwise.
             let names = |frame: &Frame, other: Actor| {
                 [frame.who, frame.object].contains(&Some(other)) && !story.world.actors[other].another
@@ -194,6 +194,19 @@ fn column_sort(kind: PartnerKind) -> Option<KindGroup> {
         PartnerKind::Animal => Some(KindGroup::Animal),
         _ => None,
     }
+}
+
+/// The sentence of the headline: the first of the story that tells anything, or that tells a contact behind what is no act of anybody: "The AV
+/// was carrying a rider. A van hit it".
+fn headline_of(story: &Story) -> usize {
+    let tells = |frame: &&Frame| {
+        let mode = frame.act() == Some(Act::Follow) && story.tokens[frame.first].text.starts_with("operat");
+        !mode && (frame.act().is_some() || frame.is_contact() || frame.sense == Sense::Headline)
+    };
+    let first = story.frames.first().map_or(0, |frame| frame.sentence);
+    let told = story.frames.iter().find(tells).map_or(first, |frame| frame.sentence);
+    let touches = story.frames.iter().any(|frame| frame.sentence == told && frame.is_contact());
+    if touches { told } else { first }
 }
 
 /// Whether the sentence of a frame says that it is one more event.

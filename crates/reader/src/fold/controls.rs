@@ -3,7 +3,7 @@
 use super::Reading;
 use super::acts::not_done;
 use crate::frame::Frame;
-use crate::lexicon::{Form, Sense};
+use crate::lexicon::{Form, Relation, Sense};
 use crate::world::{Actor, SUBJECT};
 use recrash_model::account::{Act, Control, ControlDevice, Fact, Obeyed, SignalState};
 
@@ -14,7 +14,11 @@ pub(super) fn controls(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<Control>
     let mut turned_green = None;
     for (number, frame) in reading.story.frames.iter().enumerate() {
         let changes = match frame.sense {
-            Sense::LightGreen | Sense::LightRed | Sense::LightYellow if is_of_others(reading, frame) => None,
+            Sense::LightGreen | Sense::LightRed | Sense::LightYellow
+                if is_of_others(reading, told_in(reading, frame)) =>
+            {
+                None
+            }
             // "waiting for the light to turn green": it is red.
             Sense::LightGreen if frame.form == Form::Base && !frame.happened() => Some(SignalState::Red),
             Sense::LightGreen if was_green(reading, frame, &all) => Some(SignalState::Green),
@@ -29,21 +33,27 @@ pub(super) fn controls(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<Control>
                 control.value.state = Some(state);
             }
         }
-        if frame.who != Some(actor) || reading.is_after(number) || frame.aside {
+        // "was rear-ended by a van at a red light": both were there.
+        let struck = frame.is_contact() && frame.object == Some(actor);
+        if frame.who != Some(actor) && !struck || reading.is_after(number) || frame.aside {
             continue;
         }
         let (first, end) = reading.window(number);
+        let end = if struck { of_the_contact(reading, number, end) } else { in_its_queue(reading, number, end) };
         let ran = frame.act().filter(|_| frame.happened());
         let passed = not_done(reading, number, frame);
         let ran = if frame.negated { passed } else { ran };
         for at in first..end {
             let words: Vec<&str> = tokens[at..end.min(at + 4)].iter().map(|token| token.text.as_str()).collect();
-            let Some((device, state, length)) = named(&words) else { continue };
+            let Some((device, state, length)) = named(&words).or_else(|| shown(reading, at, end)) else { continue };
+            let state = state.or_else(|| shown(reading, at + length - 1, end).and_then(|(_, state, _)| state));
             // "as there is no stop sign", "without a signal", "does not have a light".
             let before = |back: usize| at.checked_sub(back).map_or("", |at| tokens[at].text.as_str());
             let none = (1..3).any(|back| matches!(before(back), "no" | "without"))
                 || (1..4).any(|back| before(back) == "have" && before(back + 1) == "not");
-            if none && !frame.negated {
+            // "hit it at a red light", and not "hit it on a red light".
+            let there = !struck || (1..4).any(|back| before(back) == "at");
+            if none && !frame.negated || !there {
                 continue;
             }
             // "awaiting a green light": it is red.
@@ -63,11 +73,22 @@ pub(super) fn controls(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<Control>
             };
             match all.iter_mut().find(|control| control.value.device == device) {
                 Some(known) => {
-                    known.value.state = known.value.state.or(state);
+                    // "waited at a red light and entered on a green light".
+                    let moves = matches!(ran, Some(Act::SetOff | Act::Enter | Act::Turn | Act::Follow));
+                    let turned =
+                        known.value.state == Some(SignalState::Red) && state == Some(SignalState::Green) && moves;
+                    known.value.state =
+                        if turned { Some(SignalState::TurnedGreen) } else { known.value.state.or(state) };
                     known.value.obeyed = if broken { Some(Obeyed::No) } else { known.value.obeyed.or(obeyed) };
                 }
                 None => all.push(reading.told(Control { device, state, obeyed }, at, at + length)),
             }
+        }
+    }
+    if actor == SUBJECT {
+        of_that_queue(reading, &mut all);
+        if turned_green.is_none() {
+            told_alone(reading, &mut all);
         }
     }
     if let (Some((state, first, end)), true) =
@@ -78,6 +99,165 @@ pub(super) fn controls(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<Control>
     all
 }
 
+/// "in a line of vehicles held by the red light", "stopped behind cars waiting at it": the light of those in whose queue somebody stands is its
+/// own. The token up to which the words of such a stand go on.
+pub(super) fn in_its_queue(reading: &Reading<'_>, number: usize, end: usize) -> usize {
+    let story = &reading.story;
+    let frame = &story.frames[number];
+    let stands = matches!(frame.act(), Some(Act::Hold | Act::Stop)) && frame.happened();
+    let words = &story.tokens[frame.first..end.max(frame.first)];
+    let line = words.iter().any(|token| matches!(token.text.as_str(), "line" | "queue" | "row" | "column"));
+    let behind = frame.relations.iter().any(|(relation, to)| *relation == Relation::Behind && to.is_some());
+    if !stands || !(line || behind) {
+        return end;
+    }
+    let next = story.frames[number + 1..].iter().find(|next| next.first >= end && next.sentence == frame.sentence);
+    let Some(queue) = next.filter(|next| next.who.is_some_and(|who| who != SUBJECT)) else { return end };
+    let waits = matches!(queue.act(), Some(Act::Hold | Act::Stop)) || story.tokens[queue.first].text == "held";
+    let sentence = story.sentences[frame.sentence].end;
+    let goes_on =
+        |other: &&Frame| other.first > queue.first && other.sentence == frame.sentence && other.who != queue.who;
+    let until = story.frames.iter().find(goes_on).map_or(sentence, |other| other.first);
+    if waits { until.max(end) } else { end }
+}
+
+/// The words of a contact alone, up to the next verb.
+fn of_the_contact(reading: &Reading<'_>, number: usize, end: usize) -> usize {
+    let frames = &reading.story.frames;
+    frames[number + 1..].iter().find(|next| next.first > frames[number].first).map_or(end, |next| end.min(next.first))
+}
+
+/// "Traffic had queued at a red light, and the AV was standing in that line": the light of the line is its own.
+fn of_that_queue(reading: &Reading<'_>, all: &mut Vec<Fact<Control>>) {
+    let tokens = &reading.story.tokens;
+    let word = |at: usize| tokens.get(at).map_or("", |token| token.text.as_str());
+    let line = |at: &usize| {
+        matches!(word(*at), "that" | "this" | "the")
+            && matches!(word(at + 1), "queue" | "line")
+            && *at > 0
+            && word(at - 1) == "in"
+    };
+    for sentence in reading.story.sentences.iter().filter(|sentence| sentence.first < reading.until()) {
+        let Some(queue) = (sentence.first..sentence.end).find(line) else { continue };
+        let queued = (sentence.first..queue)
+            .any(|at| word(at).starts_with("queue") || word(at) == "line" || word(at) == "lined");
+        let light = (sentence.first..queue).find_map(|at| {
+            let words: Vec<&str> = (at..at + 4).map(word).collect();
+            named(&words).map(|(device, state, length)| (at, device, state, length))
+        });
+        if let (true, Some((at, device, state, length))) = (queued, light)
+            && all.iter().all(|known| known.value.device != device)
+        {
+            all.push(reading.told(Control { device, state, obeyed: Some(Obeyed::Yes) }, at, at + length));
+        }
+    }
+}
+
+/// "The signal was red for the AV as it came": told in no clause of anybody.
+fn told_alone(reading: &Reading<'_>, all: &mut Vec<Fact<Control>>) {
+    let story = &reading.story;
+    if all.iter().any(|control| control.value.device == ControlDevice::Signal) {
+        return;
+    }
+    let of_nobody = |at: usize| {
+        let over = |(number, frame): (usize, &Frame)| {
+            let (first, end) = reading.window(number);
+            frame.who.is_some() && (first..end).contains(&at)
+        };
+        !story.frames.iter().enumerate().any(over)
+    };
+    let until = reading.until().min(story.tokens.len());
+    let told = (0..until).find_map(|at| {
+        let sentence = story.sentences.iter().find(|sentence| (sentence.first..sentence.end).contains(&at))?;
+        let (device, state, length) = shown(reading, at, sentence.end)?;
+        let near = at.saturating_sub(3).max(sentence.first)..sentence.end.min(at + length + 4);
+        let own = story.tokens[near].iter().any(|token| matches!(token.text.as_str(), "av" | "it" | "its"));
+        let others = is_of_others(reading, (sentence.first, at + length));
+        (own && of_nobody(at) && !others).then_some((device, state, at, length))
+    });
+    if let Some((device, state, at, length)) = told {
+        all.push(reading.told(Control { device, state, obeyed: None }, at, at + length));
+    }
+}
+
+/// "the signal, which was flashing red", "a light showing green", "where the light was red": the light at this token, and its colour.
+pub(super) fn shown(
+    reading: &Reading<'_>,
+    at: usize,
+    end: usize,
+) -> Option<(ControlDevice, Option<SignalState>, usize)> {
+    const BETWEEN: [&str; 32] = [
+        "was",
+        "is",
+        "which",
+        "that",
+        "had",
+        "been",
+        "were",
+        ",",
+        "showed",
+        "showing",
+        "shows",
+        "show",
+        "displaying",
+        "displayed",
+        "flashing",
+        "solid",
+        "steady",
+        "still",
+        "facing",
+        "it",
+        "its",
+        "way",
+        "for",
+        "them",
+        "then",
+        "at",
+        "the",
+        "time",
+        "a",
+        "stayed",
+        "remained",
+        "burning",
+    ];
+    let tokens = &reading.story.tokens;
+    let word = |at: usize| tokens.get(at).map_or("", |token| token.text.as_str());
+    let before = at.checked_sub(1).map_or("", word);
+    // "its brake light", "a walk signal", "the van's turn signal", "the light of the cross street".
+    let other = matches!(
+        before,
+        "walk"
+            | "pedestrian"
+            | "crosswalk"
+            | "brake"
+            | "tail"
+            | "turn"
+            | "warning"
+            | "hazard"
+            | "'s"
+            | "head"
+            | "cross"
+    );
+    if !matches!(word(at), "light" | "signal" | "lights" | "signals") || other {
+        return None;
+    }
+    let colour = (at + 1..end.min(at + COLOUR_WITHIN)).find(|&at| !BETWEEN.contains(&word(at)))?;
+    let state = match word(colour) {
+        "red" => SignalState::Red,
+        "green" => SignalState::Green,
+        "yellow" | "amber" => SignalState::Yellow,
+        _ => return None,
+    };
+    // "where the light was red for cross traffic".
+    let of_cross =
+        (colour + 1..colour + 4).any(|at| matches!(word(at), "cross" | "crossing" | "oncoming" | "opposing"));
+    let plain = colour > at + 1 && !matches!(word(colour - 1), "a" | "the") && !of_cross;
+    plain.then_some((ControlDevice::Signal, Some(state), colour + 1 - at))
+}
+
+/// The colour of a light stands so near behind it. [tokens]
+const COLOUR_WITHIN: usize = 10;
+
 /// The signal or sign that these words begin with, the state of it, and how many of them name it.
 fn named(words: &[&str]) -> Option<(ControlDevice, Option<SignalState>, usize)> {
     Some(match words {
@@ -85,12 +265,26 @@ fn named(words: &[&str]) -> Option<(ControlDevice, Option<SignalState>, usize)> 
         ["right" | "left" | "turn", "on", "red", ..] | ["right" | "left", "turn", "on", "red", ..] => {
             (ControlDevice::Signal, Some(SignalState::Red), 3)
         }
+        ["on", "red", next, ..] if !matches!(*next, "light" | "signal" | "traffic") => {
+            (ControlDevice::Signal, Some(SignalState::Red), 2)
+        }
+        ["on" | "at", "a", "red", next, ..]
+            if !matches!(*next, "light" | "signal" | "traffic" | "car" | "truck" | "curb" | "van") =>
+        {
+            (ControlDevice::Signal, Some(SignalState::Red), 3)
+        }
         ["red", "light" | "signal" | "traffic", ..] | ["red", "left" | "right", "turn", ..] => {
             (ControlDevice::Signal, Some(SignalState::Red), 2)
         }
-        ["green", "light" | "signal" | "traffic" | "arrow", ..] => (ControlDevice::Signal, Some(SignalState::Green), 2),
+        ["green", "light" | "signal" | "traffic" | "arrow" | "showing", ..]
+        | ["green", "left" | "right", "turn", ..] => (ControlDevice::Signal, Some(SignalState::Green), 2),
         ["yellow", "light" | "signal", ..] => (ControlDevice::Signal, Some(SignalState::Yellow), 2),
         ["traffic", "light" | "signal", ..] => (ControlDevice::Signal, None, 2),
+        ["at" | "for", "the" | "a" | "that", "light" | "signal" | "stoplight", next, ..]
+            if !matches!(*next, "rail" | "pole" | "post" | "speed" | "pace" | "from" | "truck" | "vehicle") =>
+        {
+            (ControlDevice::Signal, None, 3)
+        }
         ["stop" | "sign", "controlled", ..] => (ControlDevice::StopSign, None, 2),
         ["stop", "sign" | "signs", ..] => (ControlDevice::StopSign, None, 2),
         ["four" | "4" | "three" | "3" | "all", "way", "stop", ..] => (ControlDevice::StopSign, None, 3),
@@ -99,33 +293,36 @@ fn named(words: &[&str]) -> Option<(ControlDevice, Option<SignalState>, usize)> 
     })
 }
 
+/// From where to where a sentence tells of a light, up to the verb of this frame.
+fn told_in(reading: &Reading<'_>, frame: &Frame) -> (usize, usize) {
+    (reading.story.sentences[frame.sentence].first, frame.first)
+}
+
 /// "The walk signal", "the van's light", "the light for the cross traffic": somebody else's.
-fn is_of_others(reading: &Reading<'_>, frame: &Frame) -> bool {
-    let sentence = reading.story.sentences[frame.sentence];
+fn is_of_others(reading: &Reading<'_>, (first, told): (usize, usize)) -> bool {
     let tokens = &reading.story.tokens;
     let word = |at: usize| tokens[at].text.as_str();
-    let signal = (sentence.first..frame.first).rfind(|&at| matches!(word(at), "signal" | "light" | "lights"));
+    let signal = (first..told).rfind(|&at| matches!(word(at), "signal" | "light" | "lights"));
     let Some(at) = signal else { return false };
-    let before = (sentence.first..at).rev().find(|&at| word(at) != "traffic");
+    let before = (first..at).rev().find(|&at| word(at) != "traffic");
     let walks = before.is_some_and(|at| matches!(word(at), "walk" | "pedestrian" | "crosswalk" | "bicycle"));
-    let owner = before.filter(|&at| word(at) == "'s" && at > sentence.first).map(|at| &tokens[at - 1]);
+    let owner = before.filter(|&at| word(at) == "'s" && at > first).map(|at| &tokens[at - 1]);
     let owned = owner.is_some_and(|owner| !owner.capital && !matches!(owner.text.as_str(), "av" | "ads" | "vehicle"));
     let cross = |word: &str| {
         matches!(word, "cross" | "crossing" | "oncoming" | "opposing" | "opposite" | "other" | "pedestrians")
     };
-    let of_cross = word(at + 1) == "for" && (at + 2..frame.first).take(3).any(|at| cross(word(at)));
-    walks || owned || of_cross || is_of_other_lanes(reading, frame, at)
+    let of_cross = word(at + 1) == "for" && (at + 2..told).take(3).any(|at| cross(word(at)));
+    walks || owned || of_cross || is_of_other_lanes(reading, (first, told), at)
 }
 
 /// "The signal for traffic in the next lanes turned green, and the arrow of its own stayed red": not its own.
-fn is_of_other_lanes(reading: &Reading<'_>, frame: &Frame, signal: usize) -> bool {
-    let sentence = reading.story.sentences[frame.sentence];
+fn is_of_other_lanes(reading: &Reading<'_>, (first, told): (usize, usize), signal: usize) -> bool {
     let tokens = &reading.story.tokens;
     let word = |at: usize| tokens[at].text.as_str();
-    let for_traffic = word(signal + 1) == "for"
-        && (signal + 2..frame.first).take(2).any(|at| matches!(word(at), "traffic" | "vehicles"));
+    let for_traffic =
+        word(signal + 1) == "for" && (signal + 2..told).take(2).any(|at| matches!(word(at), "traffic" | "vehicles"));
     let until = tokens.len().min(reading.until());
-    let stays_red = tokens[sentence.first.min(until)..until]
+    let stays_red = tokens[first.min(until)..until]
         .windows(2)
         .any(|pair| matches!(pair[0].text.as_str(), "remained" | "stayed" | "still") && pair[1].text == "red");
     for_traffic && stays_red
@@ -135,5 +332,7 @@ fn is_of_other_lanes(reading: &Reading<'_>, frame: &Frame, signal: usize) -> boo
 fn was_green(reading: &Reading<'_>, frame: &Frame, before: &[Fact<Control>]) -> bool {
     let words = &reading.story.tokens[frame.first..frame.end];
     let red = before.iter().any(|control| control.value.state == Some(SignalState::Red));
-    !red && words.iter().any(|token| matches!(token.text.as_str(), "is" | "was" | "were"))
+    !red && words
+        .iter()
+        .any(|token| matches!(token.text.as_str(), "is" | "was" | "were" | "showing" | "showed" | "shows"))
 }

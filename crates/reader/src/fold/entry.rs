@@ -99,9 +99,9 @@ fn behind_verb(reading: &Reading<'_>, frame: &Frame, stands: bool) -> Option<usi
     // The next verb is of another clause.
     let next = reading.story.frames.iter().map(|other| other.first).filter(|first| *first >= frame.end).min();
     end = end.min(next.unwrap_or(end));
-    let into = (frame.first + 1..end)
-        .take_while(|&at| !ENDS.contains(&word(at)))
-        .find(|&at| matches!(word(at), "into" | "through") && (!stands || HOW_FAR.contains(&word(at - 1))))?;
+    let into = (frame.first + 1..end).take_while(|&at| !ENDS.contains(&word(at))).find(|&at| {
+        matches!(word(at), "into" | "through" | "across") && (!stands || HOW_FAR.contains(&word(at - 1)))
+    })?;
     intersection(reading, into + 1, frame.sentence, &OF_LIGHT)
 }
 

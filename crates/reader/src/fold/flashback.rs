@@ -32,18 +32,19 @@ pub(super) fn told_back(story: &Story, contacts: &Contacts) -> Range<usize> {
     let begins = (lead + 1..story.sentences.len()).find(|&sentence| {
         had_been(story, contacts, sentence) || Some(sentence) == next && was_under_way(story, sentence)
     });
-    let Some(begin) = begins else { return 0..0 };
+    let Some(begin) = begins.or_else(|| begins_behind_headline(story, contacts, lead)) else { return 0..0 };
     let end = (begin..story.sentences.len()).find(|&sentence| is_aftermath(story, sentence));
     begin..end.unwrap_or(story.sentences.len())
 }
 
 /// The frames in the order of what happened, of somebody: the state in which the headline has the subject vehicle comes last, where the
-/// story is told again behind it; and the frame of the contact to which that belongs.
+/// story is told again behind it; and the frame of the contact to which that belongs. What the headline and the story both tell was done once.
 pub(super) fn in_order(reading: &Reading<'_>, actor: Actor) -> (Vec<usize>, Option<usize>) {
     let all = 0..reading.story.frames.len();
     let last = |number: &usize| actor == SUBJECT && is_state_at_crash(reading, *number);
     let touches = |number: &usize| reading.story.frames[*number].is_contact() && !reading.is_after(*number);
     let (at_crash, mut order): (Vec<usize>, Vec<usize>) = all.clone().partition(last);
+    order.retain(|number| !is_told_once_more(reading, *number));
     let contact = all.rev().find(touches).filter(|_| !at_crash.is_empty());
     // What came of it stays behind.
     let after = order.iter().position(|number| reading.is_after(*number)).unwrap_or(order.len());
@@ -54,29 +55,64 @@ pub(super) fn in_order(reading: &Reading<'_>, actor: Actor) -> (Vec<usize>, Opti
 /// "The AV was stopped when it was rear-ended. The AV was traveling north and slowing for a light, and a van struck it": a state at the
 /// crash, and not the first that it did.
 pub(super) fn is_state_at_crash(reading: &Reading<'_>, number: usize) -> bool {
-    let story = &reading.story;
-    let frame = &story.frames[number];
-    let touches = |other: &Frame| {
-        let pair = [other.who, other.object];
-        other.sentence == frame.sentence && other.is_contact() && pair.contains(&Some(SUBJECT))
-    };
+    let frame = &reading.story.frames[number];
     let stands = frame.who == Some(SUBJECT) && frame.act() == Some(Act::Hold) && frame.happened();
-    if !stands || reading.is_after(number) || !story.frames.iter().any(touches) {
+    if !stands || reading.is_after(number) || !tells_the_crash(reading, frame.sentence) {
         return false;
     }
     let tells = |other: &Frame| other.act().is_some() || other.sense == Sense::Yield;
-    let mut behind = reading.before(SUBJECT).filter(|(_, other)| {
-        other.sentence > frame.sentence && !other.aside && !other.described && other.happened() && tells(other)
-    });
-    let was = |other: &Frame| {
-        let from = story.sentences[other.sentence].first.max(other.first.saturating_sub(3));
-        story.tokens[from..=other.first].iter().any(|token| token.text == "was")
+    let behind = || {
+        let later = reading.before(SUBJECT).filter(|(_, other)| other.sentence > frame.sentence);
+        later.filter(|(_, other)| !other.aside && !other.described && other.happened() && tells(other))
     };
+    let Some((_, next)) = behind().next() else { return false };
     // Who was about to leave its place had stood there first.
-    let leaves = |other: &Frame| {
-        matches!(other.act(), Some(Act::Hold | Act::SetOff | Act::PullOut | Act::Reverse | Act::Accelerate))
+    let leaves = matches!(
+        next.act(),
+        Some(Act::Hold | Act::SetOff | Act::PullOut | Act::Reverse | Act::Accelerate | Act::OpenDoor)
+    );
+    // "The AV drove west and stopped", and not "drove on".
+    let stops =
+        |(_, other): (usize, &Frame)| matches!(other.act(), Some(Act::Stop | Act::Hold | Act::Slow | Act::Park));
+    let under_way = next.form == Form::Ing && goes_behind(reading, next, &["was", "been"]);
+    let had = goes_behind(reading, next, &["had"]);
+    !leaves && (under_way || had || behind().any(stops))
+}
+
+/// Whether one of these words stands right before a verb.
+fn goes_behind(reading: &Reading<'_>, frame: &Frame, words: &[&str]) -> bool {
+    let story = &reading.story;
+    let from = story.sentences[frame.sentence].first.max(frame.first.saturating_sub(3));
+    story.tokens[from..=frame.first].iter().any(|token| words.contains(&token.text.as_str()))
+}
+
+/// Whether a sentence tells that the subject vehicle was touched, or touched somebody.
+fn tells_the_crash(reading: &Reading<'_>, sentence: usize) -> bool {
+    let touches = |frame: &Frame| frame.is_contact() && [frame.who, frame.object].contains(&Some(SUBJECT));
+    reading.story.frames.iter().any(|frame| frame.sentence == sentence && touches(frame))
+}
+
+/// "It rolled back into a coupe. It was parked on a hill. It rolled back until it met the coupe": the headline tells an act that the story
+/// tells where it tells the contact again.
+fn is_told_once_more(reading: &Reading<'_>, number: usize) -> bool {
+    let frames = &reading.story.frames;
+    let frame = &frames[number];
+    let Some(contact) = reading.contacts.first.map(|contact| frames[contact].sentence) else { return false };
+    let until = contact.max(reading.back.end.saturating_sub(1));
+    let moves = frame.act().is_some_and(|act| !matches!(act, Act::Hold | Act::Follow | Act::Leave));
+    if !moves || frame.sentence >= until || !frame.happened() {
+        return false;
+    }
+    // "A rider opened a door of the AV into a taxi."
+    if !tells_the_crash(reading, frame.sentence) && frame.act() != Some(Act::OpenDoor) {
+        return false;
+    }
+    let again = |other: &Frame| {
+        let later = other.sentence > frame.sentence && other.sentence <= until && other.happened() && !other.aside;
+        later && other.who == frame.who && other.act() == frame.act()
     };
-    behind.next().is_some_and(|(_, other)| other.form == Form::Ing && was(other) && !leaves(other))
+    let leads = |other: &Frame| other.sentence < frame.sentence && other.act().is_some() && !other.aside;
+    frames.iter().any(again) && !frames.iter().any(leads)
 }
 
 /// "A van struck it. The van initially waited. ... It set off and drove into it": the sentences from the one that says how it began up to
@@ -99,6 +135,41 @@ fn begins_anew(story: &Story, contacts: &Contacts, contact: &Frame) -> Range<usi
         .filter(|again| !(next..=*again).any(|sentence| is_aftermath(story, sentence)))
         .map_or(0..0, |again| next..again + 1)
 }
+
+/// "On May 3, at about 2:40 PM, a van bumped the AV on Elm Street. The AV drove north, ...": a sentence that tells when, and the contact
+/// with nothing that led to it, is a headline, and the story begins behind it.
+fn begins_behind_headline(story: &Story, contacts: &Contacts, lead: usize) -> Option<usize> {
+    let range = story.sentences[lead];
+    let words: Vec<&str> = story.tokens[range.first..range.end].iter().map(|token| token.text.as_str()).collect();
+    let clock = words.iter().any(|word| matches!(*word, "am" | "pm" | "a.m" | "p.m" | "a.m." | "p.m."));
+    let month = |token: &Token| token.capital && MONTHS.contains(&token.text.as_str());
+    let date = story.tokens[range.first..range.end].iter().any(month);
+    let led = |frame: &Frame| frame.sentence == lead && !frame.aside && !frame.is_contact() && frame.act().is_some();
+    let one = |actor: Option<usize>| actor == Some(SUBJECT) || actor.is_some() && actor == contacts.partner;
+    let tells =
+        |frame: &Frame| frame.sentence == lead + 1 && one(frame.who) && frame.happened() && frame.act().is_some();
+    let next = story.sentences.get(lead + 1)?;
+    let mut begin = story.tokens[next.first..next.end.min(next.first + 8)].iter().map(|token| token.text.as_str());
+    let goes_on =
+        begin.any(|word| matches!(word, "then" | "after" | "following" | "upon" | "subsequently" | "continued"));
+    let headline = (clock || date) && !story.frames.iter().any(led);
+    (headline && !goes_on && story.frames.iter().any(tells) && !is_aftermath(story, lead + 1)).then_some(lead + 1)
+}
+
+const MONTHS: [&str; 12] = [
+    "january",
+    "february",
+    "march",
+    "april",
+    "may",
+    "june",
+    "july",
+    "august",
+    "september",
+    "october",
+    "november",
+    "december",
+];
 
 /// "It braked hard before making contact", "was still slowing down prior to the impact", of one of the two: what led to it.
 fn leads_to_the_contact(story: &Story, contacts: &Contacts, sentence: usize) -> bool {
@@ -205,10 +276,13 @@ fn had_been(story: &Story, contacts: &Contacts, sentence: usize) -> bool {
 
 /// "was heading north", "was northbound": how things stood when it happened.
 fn was_under_way(story: &Story, sentence: usize) -> bool {
-    let Some(first) = story.frames.iter().find(|frame| frame.sentence == sentence && !frame.aside) else {
+    let words = story.sentences[sentence];
+    // "Driving south, it was nearing a gate": the main verb.
+    let fronted = |frame: &&Frame| frame.form == Form::Ing && frame.first <= words.first + 1;
+    let here = || story.frames.iter().filter(|frame| frame.sentence == sentence && !frame.aside);
+    let Some(first) = here().find(|frame| !fronted(frame)).or_else(|| here().next()) else {
         return false;
     };
-    let words = story.sentences[sentence];
     let was = |at: usize| matches!(story.tokens[at].text.as_str(), "was" | "were");
     let bound = (words.first + 1..words.end).any(|at| was(at - 1) && story.tokens[at].text.ends_with("bound"));
     let stood = first.act() == Some(Act::Hold) && was(first.first);

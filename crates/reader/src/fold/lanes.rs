@@ -31,7 +31,15 @@ pub(super) fn enters_a_lane(reading: &Reading<'_>, number: usize, frame: &Frame)
     // "entered the right turn lane and turned right": on its way to the turn.
     let turns = reading.before(who).any(|(other, later)| other > number && later.act() == Some(Act::Turn));
     let placed = !reading.story.world.actors[who].relations.is_empty();
-    let drove = before().any(came) || placed && who != SUBJECT;
+    // "crossed the line and entered the AV's lane".
+    let owned = reading.story.tokens[lane - 1].text == "'s";
+    let drifts = |(_, before): (usize, &Frame)| before.act() == Some(Act::Drift) && before.happened();
+    let own = |actor: usize| reading.story.world.actors[actor].heading.map(|(heading, ..)| heading);
+    let same_way = own(who).zip(own(SUBJECT)).is_none_or(|(one, other)| one == other);
+    let drove = match owned {
+        true => same_way && (before().any(drifts) || placed && before().any(came)),
+        false => before().any(came) || placed && who != SUBJECT,
+    };
     wheels && !turns && !words.iter().any(oncoming) && drove && frame.out_of.is_none() && !before().any(elsewhere)
 }
 

@@ -2,6 +2,7 @@
 
 mod across;
 mod acts;
+mod begun;
 mod contact;
 mod controls;
 mod driver;
@@ -104,6 +105,9 @@ impl Reading<'_> {
         if until && frame.progress != crate::lexicon::Progress::Wished {
             return true;
         }
+        if self.is_left_behind(number) {
+            return true;
+        }
         if number <= contact
             || self.back.contains(&frame.sentence)
             || self.is_told_back(frame)
@@ -113,6 +117,7 @@ impl Reading<'_> {
             || frame.looks_back
             || self.is_of_having(frame) && frame.sentence == at.sentence
             || self.had_been_at(frame)
+            || self.had_attempted(frame, contact)
             || frame.aside && frame.sentence == at.sentence
         {
             return false;
@@ -144,6 +149,22 @@ impl Reading<'_> {
     fn is_of_having(&self, frame: &Frame) -> bool {
         let word = |back: usize| frame.first.checked_sub(back).map_or("", |at| self.story.tokens[at].text.as_str());
         (1..4).any(|back| word(back) == "having" && word(back + 1) == ",")
+    }
+
+    /// "A van struck it and then left the scene", told as the headline: what came of it.
+    fn is_left_behind(&self, number: usize) -> bool {
+        let frame = &self.story.frames[number];
+        let touches = |other: &Frame| other.sentence == frame.sentence && other.is_contact();
+        frame.act() == Some(Act::Leave) && self.story.frames[..number].iter().any(touches)
+    }
+
+    /// "was struck by a van attempting to pass it": what it had been about.
+    fn had_attempted(&self, frame: &Frame, contact: usize) -> bool {
+        let at = &self.story.frames[contact];
+        let from = at.end.min(frame.first);
+        let mut words = self.story.tokens[from..frame.first].iter().map(|token| token.text.as_str());
+        let attempts = words.next().is_some_and(|word| matches!(word, "attempting" | "trying" | "seeking"));
+        attempts && frame.sentence == at.sentence && frame.form == Form::Base
     }
 
     /// "It was struck. It had been braking for a dog": told of the time before, of whomever.
@@ -298,6 +319,7 @@ pub fn account(incident: &Incident) -> Option<Account> {
     let of_first = contacts.of_second.then(|| without_contact(record));
     let record = of_first.as_ref().unwrap_or(record);
     flashback::stops_too_late(&mut story, &contacts);
+    begun::apply(&mut story);
     let back = flashback::told_back(&story, &contacts);
     let reading = Reading { text, record, story, contacts, back };
     let own_rider = hurts_its_own_rider(&reading);
@@ -572,11 +594,20 @@ fn injury(reading: &Reading<'_>) -> Option<Fact<bool>> {
 
 fn left(reading: &Reading<'_>) -> Option<Fact<bool>> {
     let partner = reading.contacts.partner?;
-    let frame = reading
-        .story
-        .frames
-        .iter()
-        .find(|frame| frame.who == Some(partner) && frame.act() == Some(Act::Leave) && frame.happened())?;
+    // "clipped its mirror and drove on".
+    let word = |at: usize| reading.story.tokens.get(at).map_or("", |token| token.text.as_str());
+    let goes_on = |frame: &Frame| {
+        let on = matches!(word(frame.first), "drove" | "went" | "continued" | "rode" | "kept" | "carried")
+            && (frame.first + 1..frame.end + 2).any(|at| matches!(word(at), "on" | "going" | "driving"));
+        on && frame.act() == Some(Act::Follow)
+    };
+    let contact = reading.contacts.first?;
+    let mut own = reading.story.frames.iter().enumerate().filter(|(_, frame)| frame.who == Some(partner));
+    let (_, frame) = own.find(|(number, frame)| {
+        let later =
+            *number > contact && reading.is_after(*number) && frame.sentence == reading.story.frames[contact].sentence;
+        frame.happened() && (frame.act() == Some(Act::Leave) || later && goes_on(frame))
+    })?;
     Some(Fact { value: true, source: reading.of(frame) })
 }
 

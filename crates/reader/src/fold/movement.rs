@@ -362,7 +362,7 @@ fn movement(reading: &Reading<'_>, party: &Party, column: Option<Movement>, name
             best = None;
         }
         // "pulled into the parking lane, then swerved back": it parked no more.
-        if matches!(fact.act, Act::Swerve | Act::PullOut)
+        if matches!(fact.act, Act::Swerve | Act::PullOut | Act::SetOff | Act::Pass | Act::LaneChange)
             && best.as_ref().is_some_and(|(_, known, _)| *known == Movement::ParkingManeuver)
             && column != Some(Movement::ParkingManeuver)
         {

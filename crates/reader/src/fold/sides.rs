@@ -174,7 +174,8 @@ pub(super) fn lane_entered(reading: &Reading<'_>, frame: &Frame) -> Option<(usiz
         |at: &usize| matches!(word(*at), "," | "and" | "intersection" | "junction" | "from" | "at" | "of" | "as");
     let lane = (frame.first + 1..end).take_while(|at| !stops(at)).find(|&at| word(at) == "lane")?;
     let partly = frame.first.checked_sub(1).is_some_and(|at| matches!(word(at), "partially" | "partly"));
-    let named = (frame.first..lane).any(|at| NAMES.contains(&word(at)));
+    // "entered the AV's lane".
+    let named = word(lane - 1) == "'s" || (frame.first..lane).any(|at| NAMES.contains(&word(at)));
     (named && !partly).then_some((frame.first, lane))
 }
 

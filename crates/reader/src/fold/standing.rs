@@ -1,14 +1,16 @@
 //! State at the contact as the words tell it, how long somebody had stood, and why.
 
 use super::acts::{avoids, begins_to_go_on, gains_speed, in_headline, sets_off_at_green};
+use super::controls::{in_its_queue, shown};
 use super::lanes::waits_to_change;
 use super::speeds::is_of_last_contact;
 use super::{Reading, flashback, nominal};
+use crate::chunk::Joint;
 use crate::frame::Frame;
 use crate::lexicon::{Form, Lexicon, Progress, Relation, Sense};
 use crate::token::Token;
 use crate::world::{Actor, SUBJECT};
-use recrash_model::account::{Act, ContactState, Fact, Kind, StandReason, Standing};
+use recrash_model::account::{Act, ContactState, Fact, Kind, KindGroup, SignalState, StandReason, Standing};
 
 /// That somebody begins to be in a junction or a lane.
 const ENTERS: [&str; 3] = ["beginning to enter", "began to enter", "begins to enter"];
@@ -37,6 +39,15 @@ pub(super) fn state(reading: &Reading<'_>, actor: Actor) -> (Option<Fact<Contact
             continue;
         }
         let Some(act) = frame.act().filter(|act| !matches!(act, Act::OpenDoor | Act::Leave)) else { continue };
+        // "was driving on after stopping at a sign": it drives.
+        if is_behind_main(reading, frame) && told.since.is_some_and(|(sentence, _)| sentence == frame.sentence) {
+            told.moved |= act != Act::Hold;
+            // "stopped after turning right": it came there.
+            if told.stands() && told.moved && act != Act::Stop {
+                told.standing = Some(Fact { value: Standing::CameToStop, source: reading.of(frame) });
+            }
+            continue;
+        }
         let aside = frame.aside && Some(frame.sentence) != sentence && told.state.is_some();
         // "It was traveling at 0 mph", told behind the contact, is no act.
         let speed = || act == Act::Follow && is_of_last_contact(reading, frame.sentence);
@@ -158,6 +169,7 @@ impl Told {
     /// How long it has stood.
     fn stand(&mut self, reading: &Reading<'_>, frame: &Frame, act: Act, text: &str) {
         let stopping = ["slowing", "stopping", "coming to", "braking"].iter().any(|start| text.starts_with(start));
+        let stopping = stopping && frame.joint != Some(Joint::After) || stops_meanwhile(reading, frame, act);
         let how = if stopping {
             Standing::Stopping
         } else if self.moved || act == Act::Stop {
@@ -176,11 +188,42 @@ impl Told {
     }
 }
 
+/// "was driving on after stopping": what is told behind "after" came first.
+fn is_behind_main(reading: &Reading<'_>, frame: &Frame) -> bool {
+    let before = frame.first.checked_sub(1).map_or("", |at| reading.story.tokens[at].text.as_str());
+    frame.form == Form::Ing && frame.joint == Some(Joint::After) && matches!(before, "after" | "following")
+}
+
+/// "As it came to a stop, a cyclist hit it": it had yet to stand. With something told in between it had come to stand.
+fn stops_meanwhile(reading: &Reading<'_>, frame: &Frame, act: Act) -> bool {
+    let frames = &reading.story.frames;
+    let Some(number) = reading.contacts.first.filter(|_| act == Act::Stop && frame.form == Form::Past) else {
+        return false;
+    };
+    let contact = &frames[number];
+    let (first, end) = (frame.first.min(contact.first), frame.first.max(contact.first));
+    let between =
+        |other: &&Frame| other.first > first && other.first < end && !other.aside && other.sense != frame.sense;
+    let from = reading.story.sentences[frame.sentence].first.max(frame.first.saturating_sub(STOPS_WITHIN));
+    let as_it = reading.story.tokens[from..frame.first].iter().any(|token| token.text == "as");
+    as_it
+        && frame.who == Some(SUBJECT)
+        && frame.joint == Some(Joint::While)
+        && contact.joint != Some(Joint::While)
+        && frame.sentence == contact.sentence
+        && contact.is_contact()
+        && !frames.iter().any(|other| between(&other))
+}
+
+/// "as the AV" stands so near before its verb. [tokens]
+const STOPS_WITHIN: usize = 5;
+
 /// Why somebody stood: named with the last thing that made it stand.
 pub(super) fn reasons(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<StandReason>> {
     let lexicon = Lexicon::get();
     let stands = |frame: &Frame| {
         matches!(frame.act(), Some(Act::Hold | Act::Stop | Act::Slow | Act::PullOver))
+            || frame.act() == Some(Act::Park) && frame.happened()
             || matches!(frame.sense, Sense::Yield | Sense::Parked)
     };
     let mut all: Vec<Fact<StandReason>> = Vec::new();
@@ -204,18 +247,23 @@ pub(super) fn reasons(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<StandReas
         // A reason may stand before: "due to a queue, it stopped".
         let sentence = reading.story.sentences[frame.sentence];
         let begins = if all.is_empty() && !frame.aside { lead_in(reading, number).unwrap_or(first) } else { first };
-        let end = end.min(sentence.end);
+        let end = in_its_queue(reading, number, end).min(sentence.end);
         // What happened while it stood is not why: "was stopped when an ambulance passed".
         let stood = frame.act() == Some(Act::Hold);
         let then = (frame.end..end).find(|at| stood && tokens[*at].text == "when").unwrap_or(end);
         let named = lexicon.reasons(&tokens[begins..then]);
+        let red = (begins..then).find(|at| matches!(shown(reading, *at, then), Some((_, Some(SignalState::Red), _))));
+        if let Some(at) = red.filter(|_| !all.iter().any(|known| known.value == StandReason::RedLight)) {
+            all.push(reading.told(StandReason::RedLight, at, at + 1));
+        }
         for (reason, at, length) in named.iter().copied() {
             // Words that say more say all: "waiting for the" of "waiting for the intersection to clear".
             let within = |(other, from, count): &(StandReason, usize, usize)| {
                 *other != reason && rank(*other) < rank(reason) && *from < at + length && at < from + count
             };
             let place = reason == StandReason::Pedestrian && is_a_place(tokens, begins + at);
-            if !place && !all.iter().any(|known| known.value == reason) && !named.iter().any(within) {
+            let green = reason == StandReason::RedLight && shows_another_colour(reading, begins + at, length);
+            if !place && !green && !all.iter().any(|known| known.value == reason) && !named.iter().any(within) {
                 all.push(reading.told(reason, begins + at, begins + at + length));
             }
         }
@@ -233,6 +281,11 @@ pub(super) fn reasons(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<StandReas
             Sense::Act(Act::Stop | Act::Slow | Act::Hold) => frame.object,
             _ => None,
         };
+        if let Some(reason) = yields_to.and_then(|to| reading.story.world.actors[to].kind).and_then(waits_for)
+            && all.is_empty()
+        {
+            all.push(Fact { value: reason, source: reading.of(frame) });
+        }
         // Whom it met is in front of it only where that is told.
         let met = |lead: &Actor| {
             let ahead = |(relation, _): &(Relation, usize)| *relation == Relation::Ahead;
@@ -253,6 +306,20 @@ pub(super) fn reasons(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<StandReas
     all.sort_by_key(|reason| rank(reason.value));
     all.truncate(2);
     all
+}
+
+/// "stopped for a paramedic on foot": why, by whom it stops for.
+fn waits_for(kind: Kind) -> Option<StandReason> {
+    match kind {
+        Kind::PoliceCar | Kind::Ambulance | Kind::FireTruck | Kind::FirstResponder => {
+            Some(StandReason::EmergencyVehicle)
+        }
+        kind => match kind.group() {
+            KindGroup::OnFoot | KindGroup::Cyclist => Some(StandReason::Pedestrian),
+            KindGroup::Animal => Some(StandReason::Animal),
+            _ => None,
+        },
+    }
 }
 
 /// "stopped behind a van that was blocking the intersection": what the clause about the van, which begins before this token, tells of the way.
@@ -278,6 +345,16 @@ fn is_a_place(tokens: &[Token], at: usize) -> bool {
         && matches!(word(1 + article), "past" | "beyond" | "before" | "behind" | "over" | "near" | "of" | "after")
 }
 
+/// "by a green traffic light": a light of which no red is told makes nobody stand.
+fn shows_another_colour(reading: &Reading<'_>, at: usize, length: usize) -> bool {
+    let tokens = &reading.story.tokens;
+    let red = |token: &Token| token.text == "red" || token.text == "stoplight";
+    let until = reading.until().min(tokens.len());
+    let stop = tokens[at..at + length].iter().any(|token| token.text == "stop" || token.text == "stoplight");
+    let green = tokens[..at].iter().any(|token| token.text == "green");
+    green && !stop && !tokens[..until].iter().any(red)
+}
+
 fn stands_still(reading: &Reading<'_>, actor: Actor, number: usize) -> bool {
     reading
         .story
@@ -292,8 +369,19 @@ fn stands_still(reading: &Reading<'_>, actor: Actor, number: usize) -> bool {
 fn lead_in(reading: &Reading<'_>, number: usize) -> Option<usize> {
     let frame = &reading.story.frames[number];
     let sentence = reading.story.sentences[frame.sentence];
+    // "After dropping off a rider, it stopped", "vehicles were queued, so it stopped": why, told in a clause before.
+    let riders = |other: &Frame| {
+        let word = reading.story.tokens[other.first].text.as_str();
+        other.sense == Sense::Other
+            && ["drop", "pick", "let", "load", "unload"].iter().any(|stem| word.starts_with(stem))
+    };
+    let queue = |other: &Frame| {
+        let several = other.who.is_some_and(|who| reading.story.world.actors[who].several && who != SUBJECT);
+        several && !other.is_contact() && matches!(other.act(), None | Some(Act::Hold | Act::Stop))
+    };
+    let mut before = reading.story.frames[..number].iter().rev();
     let before =
-        reading.story.frames[..number].iter().rev().find(|other| other.sentence == frame.sentence && !other.aside);
+        before.find(|other| other.sentence == frame.sentence && !other.aside && !riders(other) && !queue(other));
     Some(before.map_or(sentence.first, |before| before.end)).filter(|first| *first < frame.first)
 }
 

@@ -54,6 +54,8 @@ pub(super) fn apply(frames: &mut Vec<Frame>, tokens: &[Token], sentences: &[Sent
             frames[number].sense = Sense::Act(Act::Follow);
         } else if pulls_out_to_pass(frames, number, &words) {
             frames[number].sense = Sense::Act(Act::Drift);
+        } else if pulls_out_to_a_lane(frames, number, tokens, sentences) {
+            frames[number].sense = Sense::Act(Act::LaneChange);
         } else if headed_as_it_stands(frames, number, &words) {
             frames[number].sense = Sense::Face;
         } else if leaves_a_control(frames, number, tokens, sentences) {
@@ -71,9 +73,17 @@ pub(super) fn apply(frames: &mut Vec<Frame>, tokens: &[Token], sentences: &[Sent
             number += 1;
         }
         let frame = &frames[number];
+        if frame.act() == Some(Act::Pass) && frame.side.is_none() && frame.who != Some(SUBJECT) {
+            frames[number].side = frames[number].on.as_ref().and_then(Piece::side);
+        }
+        let frame = &frames[number];
         let goes =
             matches!(frame.act(), Some(Act::Follow | Act::Enter | Act::Cross | Act::Turn | Act::SetOff | Act::Pass));
-        if goes && frame.happened() && frame.who != Some(SUBJECT) && against_signal(&words) {
+        if goes
+            && frame.happened()
+            && frame.who != Some(SUBJECT)
+            && (against_signal(&words) || at_its_red(frame, tokens, sentences))
+        {
             let ran = Frame { sense: Sense::Act(Act::RunRed), side: None, ..frame.clone() };
             frames.insert(number + 1, ran);
             number += 1;
@@ -212,6 +222,44 @@ fn pulls_out_to_pass(frames: &[Frame], number: usize, words: &[&str]) -> bool {
     !from && (passes || over)
 }
 
+/// "A coupe that was stopped behind it pulled out into the left lane": out of the queue, and from no kerb.
+fn pulls_out_to_a_lane(frames: &[Frame], number: usize, tokens: &[Token], sentences: &[Sentence]) -> bool {
+    let frame = &frames[number];
+    if frame.act() != Some(Act::PullOut) || frame.out_of.is_some() {
+        return false;
+    }
+    let text = |from: usize, to: usize| tokens[from..to].iter().map(|token| token.text.as_str());
+    let behind: Vec<&str> = text(frame.first, behind(frames, number, sentences)).collect();
+    let into = behind.iter().position(|word| matches!(*word, "into" | "toward" | "towards" | "to" | "onto"));
+    let lane = into.is_some_and(|into| behind[into..].iter().take(6).any(|word| *word == "lane"));
+    let aside = |word: &str| {
+        matches!(
+            word,
+            "curb"
+                | "curbside"
+                | "kerb"
+                | "stall"
+                | "driveway"
+                | "lot"
+                | "parked"
+                | "parking"
+                | "shoulder"
+                | "from"
+                | "alley"
+        )
+    };
+    let own = |before: &&Frame| before.who == frame.who && before.act().is_some();
+    let Some(before) = frames[..number].iter().rposition(|before| own(&before)) else { return false };
+    let stood = matches!(frames[before].act(), Some(Act::Stop | Act::Hold)) && frames[before].happened();
+    let parked = frames[..number].iter().any(|before| before.who == frame.who && before.sense == Sense::Parked);
+    let placed =
+        frames[before].relations.iter().any(|(relation, _)| matches!(relation, Relation::Behind | Relation::Ahead))
+            || text(frames[before].first, frames[before].end + 5).any(|word| word == "lane");
+    let begin = sentences[frames[before].sentence].first;
+    let from_aside = text(begin, frame.first.max(begin)).any(aside) || behind.iter().any(|word| aside(word));
+    lane && stood && placed && !parked && !from_aside
+}
+
 /// "had stopped in a lot, headed north": where it faces.
 fn headed_as_it_stands(frames: &[Frame], number: usize, words: &[&str]) -> bool {
     let frame = &frames[number];
@@ -261,6 +309,16 @@ fn against_signal(words: &[&str]) -> bool {
             && !next.contains(&"pole")
             && next.iter().any(|word| matches!(*word, "signal" | "signals" | "red" | "hand"))
     })
+}
+
+/// "A coupe whose light was red drove in", "in violation of the red light, it drove in".
+fn at_its_red(frame: &Frame, tokens: &[Token], sentences: &[Sentence]) -> bool {
+    let words: Vec<&str> =
+        tokens[sentences[frame.sentence].first..frame.first].iter().map(|token| token.text.as_str()).collect();
+    let last = &words[words.len().saturating_sub(9)..];
+    let whose = last.windows(4).any(|run| matches!(run, ["whose", "light" | "signal", "was", "red"]));
+    let violation = last.windows(5).any(|run| matches!(run, ["in", "violation", "of", ..]) && run.contains(&"red"));
+    matches!(frame.act(), Some(Act::Enter | Act::Follow | Act::Cross | Act::Turn)) && (whose || violation)
 }
 
 /// Whether a frame tells a purpose that was gone about: "swung out to get past".

@@ -418,6 +418,7 @@ impl Parser<'_> {
         // "moved left": over.
         if let Some(frame) = carry.frame
             && self.frames[frame].sense == Sense::Act(Act::Follow)
+            && !self.is_turning(frame)
             && ["mov", "slid", "swung"].iter().any(|stem| self.tokens[self.frames[frame].first].text.starts_with(stem))
         {
             self.frames[frame].sense = Sense::Act(Act::Drift);
@@ -428,6 +429,13 @@ impl Parser<'_> {
         {
             self.frames[frame].side = Some(side);
         }
+    }
+
+    /// "turned at the corner, moving left": the act before it, of the same sentence, is a turn.
+    fn is_turning(&self, frame: usize) -> bool {
+        let taken = &self.frames[frame];
+        let mut before = self.frames[..frame].iter().rev().take_while(|before| before.sentence == taken.sentence);
+        before.any(|before| before.who == taken.who && before.act() == Some(Act::Turn))
     }
 
     pub(super) fn lane(&mut self, lane: LaneWord, placed: &Placed, carry: &mut Carry) {

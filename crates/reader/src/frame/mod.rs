@@ -13,6 +13,7 @@ mod pronoun;
 mod reword;
 mod row;
 mod sense;
+mod stand;
 mod subject;
 mod supposed;
 mod verb;

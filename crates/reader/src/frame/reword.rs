@@ -1,6 +1,7 @@
 //! Phrases that say what other words of the lexicon say, put in those before anything is read: "while at a complete stop" stood, "changed from
 //! the right lane" changed lanes, "Acme was driving" is its vehicle. The places of the tokens stay.
 
+use super::stand;
 use crate::lexicon::{Lexicon, Meaning, Sense};
 use crate::token::{Token, TokenKind};
 
@@ -15,7 +16,7 @@ pub(super) fn apply(tokens: &mut Vec<Token>) {
     name_loose_boards(tokens);
     change_lanes(tokens);
     name_aliases(tokens);
-    stand_still(tokens);
+    stand::apply(tokens);
     turn_meanwhile(tokens);
     use_lanes(tokens);
     name_pickups_and_cabs(tokens);
@@ -307,25 +308,6 @@ const OF_LANES: [&str; 27] = [
 
 /// So many words a lane that is left may have: "the lane immediately to the left". [tokens]
 const LANE_WORDS: usize = 6;
-
-/// "while at a complete stop at a light", "while at a standstill": told without a verb, it stood.
-fn stand_still(tokens: &mut [Token]) {
-    for at in 1..tokens.len().saturating_sub(3) {
-        let begins = matches!(tokens[at - 1].text.as_str(), "while" | "when") && tokens[at].text == "at";
-        let word = |ahead: usize| tokens.get(at + ahead).map_or("", |token| token.text.as_str());
-        let words = match (word(1), word(2), word(3)) {
-            ("a", "complete" | "full" | "dead", "stop" | "standstill") => 4,
-            ("a", "stop" | "standstill", _) if word(3) != "sign" && word(3) != "light" => 3,
-            _ => 0,
-        };
-        if begins && words > 0 {
-            "stopped".clone_into(&mut tokens[at].text);
-            for token in &mut tokens[at + 1..at + words] {
-                "completely".clone_into(&mut token.text);
-            }
-        }
-    }
-}
 
 /// "slowed during an unprotected left turn", "was midway through a right turn": told by a noun, it was turning.
 fn turn_meanwhile(tokens: &mut [Token]) {

@@ -12,11 +12,13 @@ use recrash_model::account::{Act, Compass, KindGroup, LeftRight};
 
 type Rule = fn(&Parser<'_>, &Spoken<'_>, &Carry) -> Option<Sense>;
 
-const SENSES: [Rule; 24] = [
+const SENSES: [Rule; 37] = [
     pulls_up_to,
     lies_on_its_side,
     stands_backed_up,
     remains_so,
+    does_not_move,
+    sits_inside,
     is_ridden,
     blows_another,
     nearly_stops,
@@ -37,6 +39,17 @@ const SENSES: [Rule; 24] = [
     moves_itself,
     enters_a_slip_lane,
     tries_to_avoid,
+    is_closed,
+    launches_another,
+    drops_riders_off,
+    turns_out_to_be,
+    leaves_its_lane,
+    moves_a_little_aside,
+    moves_over_a_little,
+    handles_a_thing,
+    slides_over,
+    comes_along,
+    goes_over_the_bars,
 ];
 
 impl Parser<'_> {
@@ -155,14 +168,20 @@ fn stands_backed_up(parser: &Parser<'_>, verb: &Spoken<'_>, carry: &Carry) -> Op
     let remains = matches!(verb.chunk_before(), Some(Chunk::Verb(Sense::Act(Act::Hold), _)));
     let next = parser.tokens.get(placed.end).map_or("", |token| token.text.as_str());
     let away = matches!(next, "out" | "into" | "from") || !single(placed) && parser.tokens[placed.end - 1].text != "up";
-    (backed && (carry.be || remains) && !away).then_some(Sense::Other)
+    // "in backed-up traffic".
+    let adjective = backed && matches!(next, "traffic" | "vehicles" | "cars") && carry.preposition.is_some();
+    (backed && (carry.be || remains) && !away || adjective).then_some(Sense::Other)
 }
 
-/// "remained consistent", "remained in autonomous mode": nobody stands.
-fn remains_so(parser: &Parser<'_>, verb: &Spoken<'_>, _carry: &Carry) -> Option<Sense> {
+/// "remained consistent", "remained in autonomous mode", "staying within its lane": nobody stands.
+fn remains_so(parser: &Parser<'_>, verb: &Spoken<'_>, carry: &Carry) -> Option<Sense> {
     let placed = verb.placed();
-    if !verb.word(parser).starts_with("remain") || !single(placed) {
+    let stays = ["remain", "stay", "keep", "kept"].iter().any(|stem| verb.word(parser).starts_with(stem));
+    if !stays || !single(placed) {
         return None;
+    }
+    if goes_along(parser, verb) && !stood_before(parser, carry) {
+        return Some(Sense::Other);
     }
     let next = |at: usize| parser.tokens.get(placed.end + at).map_or("", |token| token.text.as_str());
     let so = matches!(
@@ -171,6 +190,64 @@ fn remains_so(parser: &Parser<'_>, verb: &Spoken<'_>, _carry: &Carry) -> Option<
     );
     let mode = next(0) == "in" && (1..4).any(|at| matches!(next(at), "mode" | "control" | "motion"));
     (so || mode).then_some(Sense::Other)
+}
+
+/// "in its lane", "within the lines", "to the right", "by the curb", behind a verb of staying: along which somebody drives.
+fn goes_along(parser: &Parser<'_>, verb: &Spoken<'_>) -> bool {
+    let behind = &parser.tokens[verb.placed().end..];
+    let clause = behind.iter().take(8).take_while(|token| token.kind != TokenKind::Mark && token.text != "and");
+    let words: Vec<&str> = clause.map(|token| token.text.as_str()).collect();
+    let lane = |word: &&str| matches!(*word, "lane" | "lanes" | "lines" | "boundaries" | "markings" | "path");
+    let edge = |word: &&str| matches!(*word, "curb" | "edge" | "side" | "shoulder" | "right" | "left");
+    match words.first() {
+        Some(&("in" | "within" | "inside")) => words.iter().skip(1).take(4).any(|word| lane(word)),
+        Some(&("to" | "by" | "along" | "near" | "beside")) => words.iter().skip(1).take(3).any(|word| edge(word)),
+        Some(&"close") => words.iter().skip(2).take(3).any(|word| edge(word)),
+        Some(&"on") => words.get(1) == Some(&"course"),
+        _ => false,
+    }
+}
+
+/// Whether the clause is about somebody of whom the last that is told is that it stands.
+fn stood_before(parser: &Parser<'_>, carry: &Carry) -> bool {
+    let Some(subject) = &carry.subject else { return false };
+    let own = |frame: &&super::Frame| frame.who == Some(subject.actor) && frame.happened() && frame.act().is_some();
+    let last = parser.frames.iter().rev().find(own);
+    last.is_some_and(|last| matches!(last.act(), Some(Act::Hold | Act::Stop | Act::Park)))
+}
+
+/// "was not moving", "had not moved": it stood. "Did not move over" is told of the lane.
+fn does_not_move(parser: &Parser<'_>, verb: &Spoken<'_>, carry: &Carry) -> Option<Sense> {
+    let moves = verb.sense == Sense::Act(Act::Follow) && verb.word(parser).starts_with("mov") && single(verb.placed());
+    let next = parser.tokens.get(verb.placed().end).map_or("", |token| token.text.as_str());
+    let way = matches!(
+        next,
+        "over"
+            | "aside"
+            | "into"
+            | "onto"
+            | "to"
+            | "toward"
+            | "left"
+            | "right"
+            | "out"
+            | "off"
+            | "up"
+            | "back"
+            | "away"
+    );
+    (moves && carry.negated && !way).then_some(Sense::Act(Act::Hold))
+}
+
+/// "A safety driver sat behind the wheel", "two riders sitting in the back": the vehicle does not stand.
+fn sits_inside(parser: &Parser<'_>, verb: &Spoken<'_>, _carry: &Carry) -> Option<Sense> {
+    let sits = ["sit", "sat", "seated"].iter().any(|stem| verb.word(parser).starts_with(stem));
+    let behind = &parser.tokens[verb.placed().end..];
+    let words: Vec<&str> = behind.iter().take(6).map(|token| token.text.as_str()).collect();
+    let seat = |word: &&str| matches!(*word, "seat" | "seats" | "wheel" | "inside");
+    let inside = matches!(words.first(), Some(&("in" | "behind" | "on" | "at"))) && words.iter().take(5).any(seat)
+        || matches!(words.as_slice(), ["in", "the" | "its", "back" | "front" | "rear", ..] | ["inside", ..]);
+    (sits && verb.sense == Sense::Act(Act::Hold) && inside).then_some(Sense::Other)
 }
 
 /// "a bicycle ridden by a courier" passes nobody.
@@ -188,7 +265,9 @@ fn blows_another(parser: &Parser<'_>, verb: &Spoken<'_>, _carry: &Carry) -> Opti
 /// "had almost come to rest".
 fn nearly_stops(parser: &Parser<'_>, verb: &Spoken<'_>, _carry: &Carry) -> Option<Sense> {
     let before = verb.placed().first.checked_sub(1).map_or("", |at| parser.tokens[at].text.as_str());
-    let nearly = verb.sense == Sense::Act(Act::Stop) && matches!(before, "almost" | "nearly");
+    let within = &parser.tokens[verb.placed().first..verb.placed().end];
+    let says = |word: &str| matches!(word, "almost" | "nearly");
+    let nearly = verb.sense == Sense::Act(Act::Stop) && (says(before) || within.iter().any(|token| says(&token.text)));
     nearly.then_some(Sense::Act(Act::Slow))
 }
 
@@ -275,8 +354,12 @@ fn begins_to_drive_past(parser: &Parser<'_>, verb: &Spoken<'_>, _carry: &Carry) 
     let clause = parser.tokens[placed.end..].iter().take(6).map(|token| token.text.as_str());
     let words: Vec<&str> = clause.take_while(|word| !matches!(*word, "," | "." | "when" | "while" | "as")).collect();
     let beside = matches!(words.as_slice(), ["alongside", ..] | ["next", "to", ..]);
-    match words.contains(&"past") {
-        true => Some(Sense::Act(Act::Pass)),
+    // "began to move off past the stop line" passes nobody.
+    let past = words.iter().position(|word| *word == "past").map(|at| placed.end + at + 1);
+    let somebody = |chunk: &Chunk| matches!(chunk, Chunk::Noun(_) | Chunk::Pronoun | Chunk::Piece(_));
+    let passed = past.and_then(|past| verb.all.iter().find(|chunk| chunk.first == past || chunk.first == past + 1));
+    match past.is_some() {
+        true => passed.is_some_and(|passed| somebody(&passed.chunk)).then_some(Sense::Act(Act::Pass)),
         false => beside.then_some(Sense::Act(Act::Follow)),
     }
 }
@@ -339,4 +422,153 @@ fn swings_over(parser: &Parser<'_>, verb: &Spoken<'_>, _carry: &Carry) -> Option
     let behind = &parser.tokens[verb.placed().end..];
     let lane = behind.windows(2).take(5).any(|pair| pair[0].text == "'s" && pair[1].text == "lane");
     (swings && lane).then_some(Sense::Sided(Act::Drift, side))
+}
+
+/// "the lanes were closed", "a gate that was closed": it had been, and nothing comes down.
+fn is_closed(parser: &Parser<'_>, verb: &Spoken<'_>, carry: &Carry) -> Option<Sense> {
+    let closed = verb.sense == Sense::Act(Act::Fall) && verb.word(parser) == "closed" && single(verb.placed());
+    let next = parser.tokens.get(verb.placed().end).map_or("", |token| token.text.as_str());
+    let comes_down = matches!(next, "by" | "on" | "onto" | "upon" | "as" | "while" | "behind" | "against");
+    // "It closed its doors."
+    let behind = parser.tokens[verb.placed().end..].iter().take(5).map(|token| token.text.as_str());
+    let own =
+        matches!(next, "its" | "his" | "her" | "their") && behind.into_iter().any(|word| word.starts_with("door"));
+    (closed && (carry.be && !comes_down || own)).then_some(Sense::Other)
+}
+
+/// "launched it into its path", "the chair was launched": pushed.
+fn launches_another(parser: &Parser<'_>, verb: &Spoken<'_>, carry: &Carry) -> Option<Sense> {
+    let launches = verb.sense == Sense::Act(Act::SetOff) && verb.word(parser).starts_with("launch");
+    let object = matches!(verb.next(), Some(Chunk::Noun(_) | Chunk::Pronoun));
+    (launches && single(verb.placed()) && (object || carry.be && verb.form == Form::Past)).then_some(Sense::Push)
+}
+
+/// "was dropping off a passenger" stands; "having dropped off its riders": nothing fell.
+fn drops_riders_off(parser: &Parser<'_>, verb: &Spoken<'_>, carry: &Carry) -> Option<Sense> {
+    const LETS_OFF: [&str; 8] = ["drop", "pick", "let", "load", "unload", "collect", "discharg", "board"];
+    let drops = matches!(verb.sense, Sense::Act(Act::Fall) | Sense::Other | Sense::Yield)
+        && LETS_OFF.iter().any(|stem| verb.word(parser).starts_with(stem));
+    let drops = drops && (verb.sense == Sense::Act(Act::Fall) || carry.be && verb.form == Form::Ing);
+    let rider =
+        |chunk: &Chunk| matches!(chunk, Chunk::Noun(noun) if matches!(noun.occupant, Some((Occupant::Rider, _))));
+    let riders = verb.all[verb.at + 1..].iter().take(2).any(|placed| rider(&placed.chunk));
+    let stands = carry.be && verb.form == Form::Ing;
+    (drops && riders).then_some(if stands { Sense::Act(Act::Hold) } else { Sense::Other })
+}
+
+/// "an object that turned out to be a mattress".
+fn turns_out_to_be(parser: &Parser<'_>, verb: &Spoken<'_>, _carry: &Carry) -> Option<Sense> {
+    let behind = &parser.tokens[verb.placed().first + 1..];
+    let words: Vec<&str> = behind.iter().take(5).map(|token| token.text.as_str()).collect();
+    let be =
+        words.first() == Some(&"out") && words.windows(2).any(|pair| pair == ["to", "be"] || pair == ["to", "have"]);
+    (matches!(verb.sense, Sense::Act(Act::Turn)) && be).then_some(Sense::Other)
+}
+
+/// "failed to stay within its lane": it came out of it.
+fn leaves_its_lane(parser: &Parser<'_>, verb: &Spoken<'_>, carry: &Carry) -> Option<Sense> {
+    let stays = ["remain", "stay", "keep"].iter().any(|stem| verb.word(parser).starts_with(stem));
+    let behind = &parser.tokens[verb.placed().end..];
+    let words: Vec<&str> = behind.iter().take(4).map(|token| token.text.as_str()).collect();
+    let lane =
+        matches!(words.as_slice(), ["in" | "within" | "to", ..]) && words.iter().any(|word| word.starts_with("lane"));
+    (stays && carry.negated && lane && single(verb.placed())).then_some(Sense::Act(Act::Drift))
+}
+
+/// "moved a little to the left": over.
+fn moves_a_little_aside(parser: &Parser<'_>, verb: &Spoken<'_>, _carry: &Carry) -> Option<Sense> {
+    let moves = verb.sense == Sense::Act(Act::Follow) && verb.word(parser).starts_with("mov") && single(verb.placed());
+    let word = |at: usize| parser.tokens.get(verb.placed().end + at).map_or("", |token| token.text.as_str());
+    let how = match (word(0), word(1)) {
+        ("a", "little" | "bit") => 2,
+        ("slightly" | "gradually" | "partly" | "slowly" | "further" | "abruptly" | "suddenly", _) => 1,
+        _ => return None,
+    };
+    (moves && leads_aside(&|at: usize| word(at + how))).then_some(Sense::Act(Act::Drift))
+}
+
+/// "moved over slightly to make room", "moved over within its lane", "moved over toward the curb": no lane is changed.
+fn moves_over_a_little(parser: &Parser<'_>, verb: &Spoken<'_>, _carry: &Carry) -> Option<Sense> {
+    let placed = verb.placed();
+    let over = placed.end - placed.first == 2 && parser.tokens[placed.end - 1].text == "over";
+    let behind = parser.tokens[placed.end..].iter().take(10).take_while(|token| token.kind != TokenKind::Mark);
+    let words: Vec<&str> = behind.map(|token| token.text.as_str()).take_while(|word| *word != "and").collect();
+    let within = words.windows(3).any(|run| matches!(run, ["within" | "in", "its" | "the", "lane"]));
+    let lane = words.iter().any(|word| matches!(*word, "lane" | "lanes"));
+    let little = words.iter().any(|word| {
+        matches!(
+            *word,
+            "slightly"
+                | "left"
+                | "right"
+                | "curb"
+                | "edge"
+                | "side"
+                | "shoulder"
+                | "bit"
+                | "little"
+                | "feet"
+                | "inches"
+        )
+    });
+    let room = words.windows(2).any(|pair| matches!(pair, ["make" | "give", ..])) && words.contains(&"room");
+    let moves = verb.sense == Sense::Act(Act::LaneChange) && over;
+    (moves && (within || !lane && (little || room))).then_some(Sense::Act(Act::Drift))
+}
+
+/// "took off their seatbelts", "turned on its hazard lights": nobody moved.
+fn handles_a_thing(parser: &Parser<'_>, verb: &Spoken<'_>, _carry: &Carry) -> Option<Sense> {
+    let end = verb.placed().end;
+    let word = |at: usize| parser.tokens.get(at).map_or("", |token| token.text.as_str());
+    let own = |at: usize| matches!(word(at), "its" | "his" | "her" | "their" | "the");
+    let lamp = |at: usize| {
+        ["light", "signal", "lamp", "flasher", "blinker", "indicator", "siren"]
+            .iter()
+            .any(|stem| word(at).starts_with(stem))
+    };
+    let takes = verb.sense == Sense::Act(Act::SetOff)
+        && word(end - 1) == "off"
+        && ["tak", "took"].iter().any(|stem| verb.word(parser).starts_with(stem));
+    let turns = verb.sense == Sense::Act(Act::Turn) && matches!(word(end), "on" | "off") && own(end + 1);
+    (takes && own(end) || turns && (end + 2..end + 6).any(lamp)).then_some(Sense::Other)
+}
+
+/// "slid into its lane", of no wet road: over.
+fn slides_over(parser: &Parser<'_>, verb: &Spoken<'_>, _carry: &Carry) -> Option<Sense> {
+    let slides = verb.sense == Sense::Act(Act::LoseControl) && verb.word(parser).starts_with("slid");
+    let behind = parser.tokens[verb.placed().end..].iter().take(6).map(|token| token.text.as_str());
+    let words: Vec<&str> = behind.collect();
+    let into = words.first() == Some(&"into") && words.contains(&"lane");
+    let slippery =
+        |token: &Token| matches!(token.text.as_str(), "ice" | "icy" | "wet" | "snow" | "slippery" | "slick" | "oil");
+    let first = carry_first(parser, verb);
+    let whole = parser.tokens[first..].iter().take_while(|token| token.text != ".");
+    (slides && into && !whole.into_iter().any(slippery)).then_some(Sense::Act(Act::Drift))
+}
+
+/// "was coming down the hill", "was rolling north", of who drives or rides: it goes along. Only gates and arms come down.
+fn comes_along(parser: &Parser<'_>, verb: &Spoken<'_>, carry: &Carry) -> Option<Sense> {
+    let acts = carry.subject.as_ref().is_some_and(|subject| parser.world.actors[subject.actor].acts());
+    let end = verb.placed().end;
+    let within = parser.tokens[verb.placed().first..end].iter();
+    let down = verb.sense == Sense::Act(Act::Fall)
+        && within.clone().any(|token| token.text == "coming")
+        && within.clone().any(|token| token.text == "down");
+    let way = parser.tokens[end..].iter().take(4).any(|token| {
+        matches!(
+            token.text.as_str(),
+            "hill" | "street" | "road" | "slope" | "lane" | "block" | "avenue" | "alley" | "ramp"
+        )
+    });
+    let rolls = verb.sense == Sense::Act(Act::Roll) && matches!(verb.next(), Some(Chunk::Compass(_)));
+    (acts && (down && way || rolls && single(verb.placed()))).then_some(Sense::Act(Act::Follow))
+}
+
+/// "went over the handlebars".
+fn goes_over_the_bars(parser: &Parser<'_>, verb: &Spoken<'_>, _carry: &Carry) -> Option<Sense> {
+    let goes = matches!(verb.word(parser), "went" | "going" | "go" | "flew" | "pitched");
+    let behind = parser.tokens[verb.placed().first..].iter().skip(1).take(4).map(|token| token.text.as_str());
+    let words: Vec<&str> = behind.collect();
+    let over = words.first() == Some(&"over") && words.iter().any(|word| word.starts_with("handlebar"));
+    (goes && over && matches!(verb.sense, Sense::Act(_))).then_some(Sense::Act(Act::Fall))
 }

@@ -29,6 +29,10 @@ impl Parser<'_> {
         verb.sense = self.sense_here(&verb, carry);
         // What did not end in a standstill was begun.
         carry.negated &= !(stops && verb.sense == Sense::Act(Act::Slow));
+        // "was not moving" tells that it stood.
+        carry.negated &= !(sense == Sense::Act(Act::Follow) && verb.sense == Sense::Act(Act::Hold));
+        // "failed to stay in its lane" tells that it left it.
+        carry.negated &= !(sense == Sense::Act(Act::Hold) && verb.sense == Sense::Act(Act::Drift));
         let finite = matches!(form, Form::Past | Form::Present) || form == Form::Ing && carry.be;
         leave_relative(&verb, carry);
         let own_progress = carry.progress;
@@ -292,6 +296,13 @@ impl Parser<'_> {
         carry.frame = Some(number);
         (carry.fresh, carry.governed, carry.row, carry.negated) = (false, false, false, false);
         (carry.preposition, carry.relation) = (None, None);
+        // "an opening to change lanes and get round": both are meant.
+        let wished = self.frames[number].progress == Progress::Wished && verb.form == Form::Base;
+        let both =
+            wished && matches!(verb.all.get(verb.at + 2).map(|next| &next.chunk), Some(Chunk::Verb(_, Form::Base)));
+        if both && carry.progress.is_none() && matches!(verb.next(), Some(Chunk::Joint(Joint::And))) {
+            carry.progress = Some(Progress::Wished);
+        }
         let row = carry.progress.is_some() && matches!(verb.next(), Some(Chunk::Joint(Joint::And)));
         if !(leads || row) {
             carry.progress = None;
