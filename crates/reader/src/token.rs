@@ -189,6 +189,28 @@ fn opens(word: &str) -> bool {
     matches!(word, "the" | "a" | "an" | "as" | "while" | "when" | "at")
 }
 
+/// Whether a word begins a sentence where it is written large behind "St." or "Ave.".
+fn opens_behind_abbreviation(word: &str) -> bool {
+    opens(word)
+        || matches!(
+            word,
+            "it" | "its" | "in" | "on" | "after" | "before" | "both" | "another" | "behind" | "this" | "there"
+        )
+        || matches!(word, "they" | "he" | "she" | "during" | "upon" | "once" | "because" | "with" | "two" | "traffic")
+        || matches!(
+            word,
+            "facing" | "driving" | "traveling" | "heading" | "approaching" | "waiting" | "having" | "turning"
+        )
+}
+
+/// "at 12:14 PM CT. Facing north": a time zone is no court.
+fn is_of_time(tokens: &[Token], at: usize) -> bool {
+    at.checked_sub(1).is_some_and(|before| {
+        let before = &tokens[before];
+        matches!(before.text.as_str(), "am" | "pm" | "m") || before.kind == TokenKind::Number
+    }) && matches!(tokens[at].text.as_str(), "ct" | "mt")
+}
+
 /// "It stood at [XXX] A van came": the token behind a masked name that ends a sentence without a full stop, where the next one begins here.
 fn ends_at_a_name(tokens: &[Token], at: usize) -> Option<usize> {
     if !tokens[at].capital || !opens(&tokens[at].text) {
@@ -219,7 +241,9 @@ fn ends_sentence(tokens: &[Token], at: usize) -> bool {
             let apart = after.start > token.end;
             if initial || abbreviated {
                 // `St. The van ...` ends one all the same.
-                return abbreviated && opens(&after.text) && after.capital;
+                return abbreviated
+                    && after.capital
+                    && (opens_behind_abbreviation(&after.text) || is_of_time(tokens, at - 1));
             }
             begins || apart
         }

@@ -195,6 +195,9 @@ const PREPOSITIONS: [&str; 28] = [
     "towards",
 ];
 
+/// "so the driver of the van could": so far behind "so" stands what tells a purpose. [tokens]
+const PURPOSE_WITHIN: usize = 10;
+
 const DETERMINERS: [&str; 14] =
     ["the", "this", "that", "these", "those", "its", "their", "his", "her", "our", "a", "an", "one", "any"];
 
@@ -397,8 +400,14 @@ impl Chunker<'_> {
     fn small_word(&self, at: usize) -> (Option<Chunk>, usize) {
         let word = self.text(at);
         let chunk = match word {
+            "the" if matches!(self.text(at + 1), "latter" | "former") && self.text(at + 2) != "'s" => {
+                return (Some(Chunk::Pronoun), 2);
+            }
+            // "Both were northbound".
+            "both" if matches!(self.text(at + 1), "were" | "are" | "had") => Chunk::Pronoun,
             "it" | "they" | "them" | "itself" | "he" | "she" | "him" => Chunk::Pronoun,
             "we" | "us" => Chunk::Noun(Noun { subject: true, ..Noun::unnamed() }),
+            "that" if self.is_demonstrative(at) => Chunk::Word,
             "that" | "which" | "who" | "whom" => Chunk::Relative,
             // "it got sideswiped by a bus".
             "got" | "gets" if matches!(self.verb(at + 1, &[]), Some((_, Form::Past, _))) => Chunk::Be,
@@ -419,8 +428,36 @@ impl Chunker<'_> {
         (Some(chunk), 1)
     }
 
+    /// "in that lane", "entered that lane": no relative stands behind a preposition, or before a place.
+    fn is_demonstrative(&self, at: usize) -> bool {
+        let governed = at > self.first && PREPOSITIONS.contains(&self.text(at - 1));
+        let next = at + 1;
+        let lane = (next..next + 3).any(|at| matches!(self.text(at), "lane" | "lanes"));
+        let place = self.lane(next).is_some()
+            || self.spot(next).is_some()
+            || lane && matches!(self.text(next), "lane" | "turn" | "turning" | "left" | "right" | "same")
+            || matches!(self.text(next), "street" | "road" | "queue" | "intersection" | "junction");
+        governed || !is_determiner(self.text(next)) && place
+    }
+
+    /// "so a van could turn", "so it could turn": what room was made for. ", so the van swerved" is what came of it.
+    fn is_purpose(&self, at: usize) -> bool {
+        let apart = at > self.first && !matches!(self.text(at - 1), "," | "do" | "did" | "doing" | "done" | "and");
+        let next = at + 1;
+        let named = self.noun(next).is_some() || matches!(self.text(next), "it" | "they" | "he" | "she");
+        let ends = |at: &usize| self.tokens.get(*at).is_some_and(|token| token.kind == TokenKind::Mark);
+        let mut clause = (next..self.tokens.len().min(next + PURPOSE_WITHIN)).take_while(|at| !ends(at));
+        apart
+            && named
+            && clause.any(|at| !self.tokens[at].capital && matches!(self.text(at), "could" | "might" | "would" | "can"))
+    }
+
     fn joint(&self, at: usize) -> Option<(Joint, usize)> {
         let next = self.text(at + 1);
+        // "turned so as to park": in order to.
+        if self.text(at) == "as" && next == "to" && at > self.first && self.text(at - 1) == "so" {
+            return None;
+        }
         if next == "go" && at > self.first && self.text(at - 1) == "stop" {
             return None;
         }
@@ -435,6 +472,9 @@ impl Chunker<'_> {
             "following" if matches!(next, "the" | "this") && at == self.first => (Joint::After, 1),
             "before" | "until" => (Joint::Before, 1),
             "prior" if next == "to" => (Joint::Before, 2),
+            "so" if next == "that" => (Joint::Because, 2),
+            "so" if self.is_purpose(at) => (Joint::Because, 1),
+            "in" if next == "order" && self.text(at + 2) == "that" => (Joint::Because, 3),
             "because" | "due" | "since" | "although" | "though" | "whereas" => (Joint::Because, 1),
             _ => return None,
         })

@@ -137,6 +137,13 @@ impl Chunker<'_> {
         known.is_some_and(|(noun, _)| !noun.several)
     }
 
+    /// "a group of", "the pair of".
+    fn is_group(&self, at: usize) -> bool {
+        let many = matches!(self.text(at + 1), "group" | "pair" | "couple" | "pack" | "party" | "trio")
+            || self.text(at) == "a" && self.text(at + 1) == "number";
+        matches!(self.text(at), "a" | "the") && many && self.text(at + 2) == "of"
+    }
+
     fn another_of(&self, at: usize) -> Option<(Noun, usize)> {
         let (inner, length) = self.noun(at)?;
         let kind = inner.kind.filter(|_| !inner.subject).unwrap_or(Kind::Vehicle);
@@ -147,21 +154,26 @@ impl Chunker<'_> {
     /// A draft with its article.
     fn article(&self, first: usize) -> Draft {
         let (article, length) = match self.text(first) {
-            "the" | "this" | "that" | "these" | "those" | "its" | "their" | "our" | "his" | "her" => {
-                (Article::Definite, 1)
-            }
             // "one of the cyclists", "one of them".
             "one" if self.text(first + 1) == "of" && matches!(self.text(first + 2), "the" | "these" | "those") => {
                 (Article::Indefinite, 3)
             }
             "one" if self.text(first + 1) == "of" && self.text(first + 2) == "them" => (Article::Indefinite, 2),
+            // "a group of four cyclists".
+            "a" | "the" if self.is_group(first) => {
+                (if self.text(first) == "a" { Article::Indefinite } else { Article::Definite }, 3)
+            }
             "a" | "an" | "one" => (Article::Indefinite, 1),
+            "the" | "this" | "that" | "these" | "those" | "its" | "their" | "our" | "his" | "her" => {
+                (Article::Definite, 1)
+            }
             // It is an adjective as well.
             "another" => (Article::Indefinite, 0),
             _ => (Article::None, 0),
         };
-        let noun = Noun { article, ..Noun::unnamed() };
-        let (at, one_of) = (first + length, length > 1);
+        let group = self.is_group(first);
+        let noun = Noun { article, several: group, ..Noun::unnamed() };
+        let (at, one_of) = (first + length, length > 1 && !group);
         Draft { noun, first, at, one_of, subject: false, make: false, plural: false, strange: 0 }
     }
 
@@ -625,7 +637,7 @@ impl Chunker<'_> {
 
     /// A head that names somebody in a vehicle; what stands before it is the vehicle: "the van driver".
     fn occupant_head(&self, who: Occupant, length: usize, draft: &mut Draft) {
-        let plain = matches!(self.text(draft.at), "driver" | "drivers") && length == 1;
+        let plain = matches!(self.text(draft.at), "driver" | "drivers" | "rider" | "riders") && length == 1;
         let noun = &mut draft.noun;
         if draft.subject || noun.kind.is_some() || draft.make {
             let kind = noun.kind.or(Some(Kind::Vehicle));

@@ -333,7 +333,8 @@ impl Chunker<'_> {
         let Meaning::Verb(sense, form) = found.meaning else { return None };
         // "was run into".
         let done = self.text(at) == "run" && matches!(before.last().map(|placed| &placed.chunk), Some(Chunk::Be));
-        let form = if done && sense == Sense::Contact { Form::Past } else { form };
+        let perfect = form == Form::Base && at > self.first && self.is_perfect(at, before);
+        let form = if done && sense == Sense::Contact || perfect { Form::Past } else { form };
         let word_before = if at > self.first { self.text(at - 1) } else { "" };
         let verb = Candidate { chunker: self, before, sense, form, at, length: found.length, word_before };
         if verb.climbs_nothing() || form == Form::Base && !self.takes_base(at, before) {
@@ -443,6 +444,29 @@ impl Chunker<'_> {
                 "roadway" | "road" | "street" | "lane" | "lanes" | "intersection" | "path" | "crosswalk" | "traffic"
             )
         })
+    }
+
+    /// "having come to a stop", "had just run a light", "had slowed and come to a stop": participles that look like base forms.
+    fn is_perfect(&self, at: usize, before: &[Placed]) -> bool {
+        if !matches!(self.text(at), "come" | "run" | "become" | "overcome") {
+            return false;
+        }
+        let adverb = |at: usize| {
+            self.text(at).ends_with("ly")
+                || matches!(
+                    self.text(at),
+                    "just" | "already" | "only" | "since" | "now" | "once" | "not" | "also" | "then"
+                )
+        };
+        let has = |at: usize| {
+            let back = (self.first..at).rev().find(|at| !adverb(*at));
+            back.filter(|back| matches!(self.text(*back), "had" | "has" | "have" | "having"))
+        };
+        let row = || {
+            let last = before.iter().rev().find(|placed| matches!(placed.chunk, Chunk::Verb(..) | Chunk::Be));
+            last.is_some_and(|last| matches!(last.chunk, Chunk::Verb(_, Form::Past)) && has(last.first).is_some())
+        };
+        has(at).is_some() || matches!(self.text(at - 1), "and" | "then") && row()
     }
 
     /// A base form is a verb only behind the words that call for one: "to stop", "did not stop", "to stop and wait".

@@ -8,7 +8,7 @@ use crate::world::SUBJECT;
 use recrash_model::account::Act;
 
 /// Places that are passed on the way, and are nobody.
-const PLACES: [&str; 26] = [
+pub(super) const PLACES: [&str; 26] = [
     "sign",
     "line",
     "light",

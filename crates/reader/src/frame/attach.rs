@@ -24,6 +24,10 @@ impl Parser<'_> {
 
     /// Where somebody is: of the frame, or of the noun before.
     pub(super) fn relate(&mut self, relation: Relation, to: Option<Actor>, carry: &mut Carry) {
+        if let Some(last) = carry.last.clone().filter(|_| to.is_none_or(|to| to == SUBJECT) && self.stands_with(carry))
+        {
+            return self.note(last.actor, relation);
+        }
         // "fell off the vehicle ahead of it": that vehicle.
         let fell_off = relation == Relation::Ahead && self.fell_off_last(carry);
         let mut who = None;
@@ -361,6 +365,7 @@ impl Parser<'_> {
             return;
         }
         let onto = matches!(carry.preposition, Some("onto" | "into" | "to"));
+        let (governed, there) = (carry.preposition.is_some(), matches!(carry.preposition, Some("at" | "near")));
         carry.preposition = None;
         // Behind a noun that is an object: "a truck facing east" has its own frame; "yield to a van northbound on ..." is rare.
         match carry.frame {
@@ -377,15 +382,29 @@ impl Parser<'_> {
                     taken.onto = !from && (onto || (turns && taken.act() != Some(Act::Enter)));
                 }
                 let (who, onto) = (taken.who, taken.onto);
-                if let (Some(who), false) = (who, onto) {
+                // "It and a van were traveling north": both.
+                for who in who.into_iter().chain(carry.also.as_ref().map(|also| also.actor)).filter(|_| !onto) {
                     self.world.actors[who].heading.get_or_insert(stands);
                 }
             }
-            None => {
-                if let Some(subject) = &carry.subject {
+            None => match &carry.subject {
+                Some(subject) => {
                     self.world.actors[subject.actor].heading.get_or_insert(stands);
                 }
-            }
+                // "With it northbound in the bus lane": who stands behind "with".
+                None if carry
+                    .last
+                    .as_ref()
+                    .is_some_and(|last| last.end == placed.first && self.is_behind_with(last.end)) =>
+                {
+                    let actor = carry.last.as_ref().map_or(SUBJECT, |last| last.actor);
+                    self.world.actors[actor].heading.get_or_insert(stands);
+                }
+                None if carry.main.is_none() && !(from || onto || there) => {
+                    carry.lead_heading = carry.lead_heading.or(Some((stands, governed)));
+                }
+                None => {}
+            },
         }
     }
 
@@ -463,8 +482,21 @@ impl Parser<'_> {
             return;
         }
         let Some(frame) = carry.frame else {
-            if let Some(subject) = &carry.subject {
-                self.world.actors[subject.actor].lane.get_or_insert(stands);
+            match &carry.subject {
+                Some(subject) => _ = self.world.actors[subject.actor].lane.get_or_insert(stands),
+                // "With it in the bus lane".
+                None if carry
+                    .last
+                    .as_ref()
+                    .is_some_and(|last| last.end + 4 > placed.first && self.is_behind_with(last.end)) =>
+                {
+                    let actor = carry.last.as_ref().map_or(SUBJECT, |last| last.actor);
+                    self.world.actors[actor].lane.get_or_insert(stands);
+                }
+                None if carry.main.is_none() && matches!(preposition, Some("in" | "within" | "from" | "on")) => {
+                    carry.lead_lane.get_or_insert(stands);
+                }
+                None => {}
             }
             return;
         };
@@ -493,7 +525,9 @@ impl Parser<'_> {
         let came = strip
             && self.frames.iter().any(|before| before.first < first && before.who == who && before.act().is_some());
         let enters = enters && (purpose || came) || stepped;
-        if let Some(who) = who.filter(|_| !(into || enters) || from) {
+        // "It and a van were in the left lane": both.
+        let also = carry.also.as_ref().map(|also| also.actor);
+        for who in who.into_iter().chain(also).filter(|_| !(into || enters) || from) {
             self.world.actors[who].lane.get_or_insert(stands);
         }
     }

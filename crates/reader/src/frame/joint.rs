@@ -71,7 +71,10 @@ impl Parser<'_> {
         // "It passed the van which was waiting while also running the light": it ran the light.
         let also = |placed: &&Placed| !matches!(placed.chunk, Chunk::Word);
         let ing = matches!(behind.iter().find(also).map(|placed| &placed.chunk), Some(Chunk::Verb(_, Form::Ing)));
+        let stands = carry.frame.is_some_and(|frame| self.frames[frame].act() == Some(Act::Hold));
+        let besides = behind.first().is_some_and(|placed| self.tokens[placed.first].text == "also");
         if joint == Joint::While
+            && (stands || besides)
             && ing
             && carry.relative
             && carry.has_verb
@@ -83,13 +86,14 @@ impl Parser<'_> {
         if let Some(mention) = self.seen_leaving(joint, behind, carry) {
             carry.subject = Some(mention);
         }
-        self.leave_place(carry);
+        self.leave_place(carry, false);
         carry.clause += 1;
         (carry.preposition, carry.relation, carry.be, carry.to) = (None, None, false, false);
         if joint != Joint::And || !matches!(next, Some(Chunk::Verb(..) | Chunk::Not | Chunk::Be)) {
             carry.stranger = false;
         }
         if joint != Joint::And {
+            (carry.lead_heading, carry.lead_lane) = (None, None);
             carry.joint = Some(joint);
             (carry.progress, carry.negated) = (None, false);
         }
@@ -106,6 +110,14 @@ impl Parser<'_> {
             }
             if !matches!(next, Some(Chunk::Verb(_, Form::Base))) {
                 carry.progress = None;
+            }
+            // "approached a light that was red and stopped": no light does.
+            let stops = matches!(
+                next,
+                Some(Chunk::Verb(Sense::Act(Act::Stop | Act::Hold | Act::Slow) | Sense::Yield, Form::Past))
+            );
+            if stops && carry.relative && carry.stranger && carry.main.is_some() {
+                (carry.subject, carry.stranger, carry.relative, carry.frame) = (carry.main.clone(), false, false, None);
             }
             if let Some(main) = self.saw_and_did(next, carry) {
                 (carry.subject, carry.has_verb, carry.relative) = (Some(main), true, false);
@@ -185,6 +197,37 @@ impl Parser<'_> {
         true
     }
 
+    /// "Behind it stood a van", "Ahead of it, likewise stopped, was a van", "Parked at the curb was a van": the verb before its subject.
+    pub(super) fn inverts(&self, all: &[Placed], at: usize) -> bool {
+        let begins =
+            all[..at].iter().rposition(|placed| matches!(placed.chunk, Chunk::Joint(_))).map_or(0, |joint| joint + 1);
+        let clause = &all[begins..at];
+        let plain = |placed: &&Placed| !matches!(placed.chunk, Chunk::Word | Chunk::Comma);
+        let stands = |sense: Sense| matches!(sense, Sense::Act(Act::Hold | Act::Stop | Act::Park) | Sense::Parked);
+        let opens = clause.iter().find(plain).is_some_and(|placed| match placed.chunk {
+            Chunk::Relation(_) => true,
+            Chunk::Verb(sense, Form::Past | Form::Ing) => stands(sense),
+            _ => false,
+        });
+        let governed = (begins..at).all(|at| match all[at].chunk {
+            Chunk::Noun(_) | Chunk::Pronoun => {
+                at > begins && matches!(all[at - 1].chunk, Chunk::Relation(_) | Chunk::Preposition(_))
+            }
+            Chunk::Piece(_) | Chunk::Relative | Chunk::Be => false,
+            Chunk::Verb(_, form) => {
+                form == Form::Ing || !matches!(all[at.saturating_sub(1)].chunk, Chunk::Pronoun | Chunk::Noun(_))
+            }
+            _ => true,
+        });
+        let Some(named) = all[at + 1..].iter().position(|placed| !matches!(placed.chunk, Chunk::Word)) else {
+            return false;
+        };
+        let named = at + 1 + named;
+        let somebody = matches!(&all[named].chunk, Chunk::Noun(noun)
+            if (noun.article == Article::Indefinite || noun.several && noun.article == Article::None) && noun.occupant.is_none());
+        opens && governed && somebody && !another_finite(all, named)
+    }
+
     /// "It detected that the bus was stopping and moved back": who saw what went on did so.
     fn saw_and_did(&self, next: Option<&Chunk>, carry: &Carry) -> Option<Mention> {
         let main = carry.main.as_ref().filter(|main| carry.subject.as_ref() != Some(main))?;
@@ -220,6 +263,7 @@ impl Parser<'_> {
         }
         if let Some(last) = carry.last.clone() {
             let last = if self.tokens[all[at].first].text == "who" { self.person_of(last) } else { last };
+            let last = self.placed_by_it(all, at, carry).unwrap_or(last);
             if !carry.relative {
                 carry.outer = carry.subject.clone().filter(|_| !carry.has_verb);
             }
@@ -228,6 +272,19 @@ impl Parser<'_> {
             (carry.be, carry.to, carry.progress) = (false, false, None);
         }
         false
+    }
+
+    /// "The van behind it, which had been waiting": the van, of which no verb has told yet.
+    fn placed_by_it(&self, all: &[Placed], at: usize, carry: &Carry) -> Option<Mention> {
+        let back = at - usize::from(at > 0 && matches!(all[at - 1].chunk, Chunk::Comma));
+        let [.., noun, relation, by] = &all[..back] else { return None };
+        let it = match &by.chunk {
+            Chunk::Pronoun => true,
+            Chunk::Noun(noun) => noun.subject,
+            _ => false,
+        };
+        let placed = matches!(noun.chunk, Chunk::Noun(_)) && matches!(relation.chunk, Chunk::Relation(_)) && it;
+        carry.subject.clone().filter(|subject| placed && !carry.has_verb && subject.end == relation.first)
     }
 
     /// "yielded to a fire truck, with its siren on, traveling south": behind the second comma it is still told of the truck.
@@ -246,7 +303,6 @@ impl Parser<'_> {
     }
 
     pub(super) fn comma(&mut self, comma: usize, next: Option<&Chunk>, carry: &mut Carry) -> bool {
-        self.leave_place(carry);
         carry.after_comma = true;
         // "The van, unable to stop, struck it": the comma ends what did not happen.
         carry.negated &= carry.nobody || !carry.has_verb && carry.frame.is_none() && carry.fresh;
@@ -307,11 +363,11 @@ impl Parser<'_> {
         }
     }
 
-    /// Behind a clause that tells of a place the sentence goes on with whom it is about.
-    fn leave_place(&self, carry: &mut Carry) {
-        if std::mem::take(&mut carry.place) && carry.subject.is_none() {
-            carry.subject = carry.main.clone();
-            carry.has_verb = carry.main.is_some();
+    /// Behind a clause that tells of a place the sentence goes on with whom it is about: "approached a lot where cars were parked, and slowed".
+    pub(super) fn leave_place(&self, carry: &mut Carry, goes_on: bool) {
+        if std::mem::take(&mut carry.place) && (carry.subject.is_none() || goes_on) {
+            (carry.subject, carry.frame) = (carry.main.clone(), carry.frame.filter(|_| !goes_on));
+            (carry.has_verb, carry.stranger) = (carry.main.is_some(), false);
         }
     }
 }

@@ -5,6 +5,7 @@ mod attach;
 mod build;
 mod doors;
 mod joint;
+mod maneuver;
 mod named;
 mod object;
 mod pairs;

@@ -3,7 +3,7 @@
 use super::parser::{Carry, Mention, Parser};
 use super::row::{another_finite, goes_on_behind_comma, relation_behind, transitive};
 use crate::chunk::{Article, Chunk, Joint, Noun, Piece, Placed};
-use crate::lexicon::{Adjective, Sense};
+use crate::lexicon::{Adjective, Relation, Sense};
 use crate::token::number;
 use crate::world::{Actor, SUBJECT};
 use recrash_model::account::{Act, Kind, KindGroup};
@@ -20,7 +20,7 @@ impl Parser<'_> {
         let next = all.get(at + 1).map(|placed| &placed.chunk);
         let tokens = (placed.first, placed.end);
         if self.is_own_thing(noun, all, at) {
-            let actor = self.its(carry);
+            let actor = self.its(&self.tokens[placed.first].text, carry);
             self.mention(Mention { actor, piece: None, person: None, end: placed.end }, placed, carry, next);
             return false;
         }
@@ -35,10 +35,12 @@ impl Parser<'_> {
             return true;
         }
         self.world.apart = self.stands_farther(placed.end);
+        self.world.before = carry.relation == Some(Relation::Behind);
         let actor = self.world.resolve(noun, tokens, hint);
-        self.world.apart = false;
+        (self.world.apart, self.world.before) = (false, false);
         let verb = matches!(next, Some(Chunk::Be | Chunk::Verb(..)));
         let actor = if verb && self.is_vehicle_of_story(noun, actor, carry) { SUBJECT } else { actor };
+        let actor = if self.is_who_stands(noun, actor, carry) { SUBJECT } else { actor };
         // "one standing passenger": the vehicle does not stand.
         let described = if noun.occupant.is_some() { noun.owner.as_deref() } else { Some(noun) };
         if let Some(described) = described {
@@ -50,7 +52,8 @@ impl Parser<'_> {
             carry.preposition = Some("of");
         }
         // "At this time a van ...": the van is not behind "at".
-        if carry.filled && noun.article != Article::None {
+        let apart = carry.preposition != Some("to") && self.stands_apart(all, at);
+        if (carry.filled || apart) && noun.article != Article::None {
             (carry.preposition, carry.relation) = (None, None);
             // "It opened its door at the moment a van was driving by": the van begins a clause.
             if matches!(next, Some(Chunk::Be)) {
@@ -70,6 +73,26 @@ impl Parser<'_> {
         let person = noun.occupant.map(|(who, _)| who);
         self.mention(Mention { actor, piece: None, person, end: placed.end }, placed, carry, next);
         false
+    }
+
+    /// "At low speed it moved", "Near the junction the van braked": nothing but an adverb stands between a preposition and what it governs.
+    fn stands_apart(&self, all: &[Placed], at: usize) -> bool {
+        let Some(before) = at.checked_sub(1).map(|at| &all[at]) else { return false };
+        let word = self.tokens[before.first].text.as_str();
+        let between = word.ends_with("ly")
+            || matches!(
+                word,
+                "all" | "both" | "half" | "only" | "just" | "involving" | "even" | "also" | "about" | "what"
+            )
+            || matches!(
+                word,
+                "approximately" | "around" | "over" | "almost" | "nearly" | "whose" | "directly" | "right"
+            );
+        match before.chunk {
+            Chunk::Word => !between && !(word.ends_with("ing") && !self.tokens[before.first].capital),
+            Chunk::Spot(_) | Chunk::Lane(_) | Chunk::Compass(_) => true,
+            _ => false,
+        }
     }
 
     /// "two vehicles" of "a van located two vehicles behind it": how far, and nobody.
@@ -94,7 +117,14 @@ impl Parser<'_> {
 
     /// "The AV was the lead vehicle stopped at a light", "waited as the first car in line": what it is, and nobody else.
     fn is_what_it_is(&self, noun: &Noun, all: &[Placed], at: usize, carry: &Carry) -> bool {
-        let first = noun.adjectives.iter().any(|adjective| matches!(adjective, Adjective::Lead | Adjective::First));
+        let in_line = noun.ordinal.is_some() && {
+            let word = |ahead: usize| self.tokens.get(all[at].end + ahead).map_or("", |token| token.text.as_str());
+            word(0) == "in" && matches!(word(1), "line" | "queue" | "the")
+        };
+        let one_of = noun.one_of && noun.kind.is_some_and(Kind::is_vehicle) && carry.be;
+        let first = one_of
+            || in_line
+            || noun.adjectives.iter().any(|adjective| matches!(adjective, Adjective::Lead | Adjective::First));
         let vehicle = noun.kind.is_some_and(Kind::is_vehicle) && noun.occupant.is_none() && !noun.several;
         let of_subject =
             carry.subject.as_ref().is_some_and(|subject| subject.actor == SUBJECT && subject.piece.is_none());
@@ -121,6 +151,25 @@ impl Parser<'_> {
             && noun.occupant.is_none();
         let of_main = carry.main.as_ref().is_some_and(|main| main.actor == actor && actor != SUBJECT);
         plain && of_main && carry.fresh && carry.joint == Some(Joint::While) && self.world.topic == SUBJECT
+    }
+
+    /// "It stood at the curb. A van went by and clipped the parked vehicle": who was told to stand, where no other one was.
+    fn is_who_stands(&mut self, noun: &Noun, actor: Actor, carry: &Carry) -> bool {
+        let called = noun.adjectives.iter().any(|word| matches!(word, Adjective::Stopped | Adjective::Parked));
+        let plain = matches!(noun.kind, Some(Kind::Vehicle | Kind::PassengerCar))
+            && noun.names.is_empty()
+            && noun.number.is_none();
+        let known = &self.world.actors[actor];
+        let of_main = carry.subject.as_ref().is_some_and(|subject| subject.actor == actor || subject.actor != SUBJECT);
+        let new = known.mentions == 1;
+        let other = known.parked && !new && !carry.subject.as_ref().is_some_and(|subject| subject.actor == actor);
+        let one = noun.article == Article::Definite && !noun.several && noun.occupant.is_none();
+        let stands =
+            called && plain && one && actor != SUBJECT && self.world.actors[SUBJECT].parked && of_main && !other;
+        if stands && new {
+            self.world.actors[actor].mentions = 0;
+        }
+        stands
     }
 
     pub(super) fn piece(&mut self, piece: &Piece, all: &[Placed], at: usize, carry: &mut Carry) -> bool {
@@ -151,6 +200,7 @@ impl Parser<'_> {
             let told = owner.compass.is_some()
                 || owner.adjectives.iter().any(|word| matches!(word, Adjective::First | Adjective::Another));
             let actor = if told { actor } else { self.as_a_result(actor, placed.first) };
+            let actor = if self.is_who_stands(owner, actor, carry) { SUBJECT } else { actor };
             self.attribute(owner, actor, placed, carry);
             return Some(actor);
         }
@@ -162,14 +212,17 @@ impl Parser<'_> {
             carry.frame = None;
             return Some(last.actor);
         }
+        let word =
+            self.tokens[placed.first..placed.end].iter().find(|token| matches!(token.text.as_str(), "its" | "it"));
         if piece.its {
-            return Some(self.part_behind_object(carry).unwrap_or_else(|| self.its(carry)));
+            let word = word.map_or("their", |token| &token.text);
+            return Some(self.part_behind_object(carry).unwrap_or_else(|| self.its(word, carry)));
         }
         // "The edge of the open door touched": of whom it was opened.
         let door = if piece.door && carry.fresh { self.door_of() } else { None };
         // "It set off, and the rear tire touched": of whom the sentence is about.
         let verb = matches!(all.get(at + 1).map(|placed| &placed.chunk), Some(Chunk::Verb(..) | Chunk::Be));
-        door.or_else(|| (carry.fresh && verb).then(|| self.its(carry)))
+        door.or_else(|| (carry.fresh && verb).then(|| self.its("its", carry)))
     }
 
     pub(super) fn pronoun(&mut self, all: &[Placed], at: usize, carry: &mut Carry) -> bool {
@@ -180,12 +233,60 @@ impl Parser<'_> {
         {
             return false;
         }
+        // "Having slowed until it was nearly stopped, the AV": who is named behind.
+        let inner = matches!(carry.joint, Some(Joint::Before | Joint::While | Joint::Because)) && carry.fresh;
+        if inner
+            && carry.main.is_none()
+            && !carry.pending.is_empty()
+            && carry.subject.is_none()
+            && self.world.topic != SUBJECT
+        {
+            return false;
+        }
+        if self.stands_apart(all, at) {
+            (carry.preposition, carry.relation) = (None, None);
+        }
         let struck = self.waits_struck(all, at, carry).or_else(|| self.closes(all, at));
-        let actor = struck.unwrap_or_else(|| self.not_itself(self.its(carry), carry));
+        let actor = struck.unwrap_or_else(|| self.not_itself(self.its(&self.tokens[all[at].first].text, carry), carry));
         let actor = self.not_who_stands(actor, all, at, carry);
-        let mention = Mention { actor, piece: None, person: None, end: all[at].end };
+        let actor = self.latter(all[at].first).unwrap_or(actor);
+        let both = self.both(all, at).filter(|_| carry.main.is_none());
+        let mention = Mention { actor: both.unwrap_or(actor), piece: None, person: None, end: all[at].end };
         self.mention(mention, &all[at], carry, chunk(1));
+        if both.is_some() {
+            carry.also = carry.subject.clone().map(|subject| Mention { actor: SUBJECT, ..subject });
+        }
         false
+    }
+
+    /// "the latter": who was named last; "the former": who was before that.
+    fn latter(&self, first: usize) -> Option<Actor> {
+        let mut named: Vec<Actor> =
+            (0..self.world.actors.len()).filter(|actor| self.world.actors[*actor].mentions > 0).collect();
+        named.sort_by_key(|actor| std::cmp::Reverse(self.world.actors[*actor].last));
+        let back = match (self.tokens[first].text.as_str(), self.tokens.get(first + 1)?.text.as_str()) {
+            ("the", "latter") => 0,
+            ("the", "former") => 1,
+            _ => return None,
+        };
+        named.get(back).copied()
+    }
+
+    /// "Both were northbound", "They entered the junction together": the only other vehicle, besides the subject vehicle.
+    fn both(&self, all: &[Placed], at: usize) -> Option<Actor> {
+        let together = || all[at..].iter().any(|placed| self.tokens[placed.first].text == "together");
+        let both = match self.tokens[all[at].first].text.as_str() {
+            "both" => true,
+            "they" => together(),
+            _ => false,
+        };
+        let known = &self.world.actors;
+        let mut others = (1..known.len()).filter(|actor| {
+            let other = &known[*actor];
+            other.mentions > 0 && !other.several && other.kind.is_some_and(Kind::is_vehicle)
+        });
+        let (only, more) = (others.next()?, others.next());
+        (both && more.is_none() && known[SUBJECT].mentions > 0).then_some(only)
     }
 
     /// Somebody is named: where somebody is, behind a preposition, as the object of the verb before, or as who a clause is about.
@@ -226,7 +327,7 @@ impl Parser<'_> {
             frame.object.is_none() && transitive(frame.sense) && !carry.fresh
         });
         match open {
-            Some(frame) if !carry.after_comma => self.object(frame, mention, placed, carry),
+            Some(frame) if !carry.after_comma && !carry.inverts => self.object(frame, mention, placed, carry),
             _ => self.subject(mention, carry, next),
         }
     }
@@ -270,6 +371,15 @@ impl Parser<'_> {
         if taken.sense == Sense::Act(Act::Pass) {
             taken.side = taken.side.or(mention.piece.as_ref().and_then(Piece::side));
         }
+        // "A van stood ahead of it. It began to go around the van": nobody goes around itself.
+        if taken.who == Some(actor) && actor != SUBJECT && taken.sense == Sense::Act(Act::Pass) {
+            taken.who = Some(SUBJECT);
+            for mention in
+                [&mut carry.subject, &mut carry.main].into_iter().flatten().filter(|mention| mention.actor == actor)
+            {
+                mention.actor = SUBJECT;
+            }
+        }
         let (sense, who) = (taken.sense, taken.who);
         carry.last = Some(Mention { actor, ..mention });
         (carry.governed, carry.fresh) = (false, false);
@@ -289,6 +399,21 @@ impl Parser<'_> {
         }
     }
 
+    /// "Northbound on Elm Street, a van", "In the left lane, it": which way, and in which lane. A street's direction is said of the subject
+    /// vehicle alone, and who walks has no lane.
+    fn led_by(&mut self, actor: Actor, carry: &mut Carry) {
+        let (heading, lane) = (carry.lead_heading.take(), carry.lead_lane.take());
+        let known = &mut self.world.actors[actor];
+        let drives = actor == SUBJECT
+            || known.kind.is_some_and(|kind| kind.is_vehicle() || kind.group() == KindGroup::Motorcycle);
+        if let Some((heading, _)) = heading.filter(|(_, street)| drives && (actor == SUBJECT || !street)) {
+            known.heading.get_or_insert(heading);
+        }
+        if let Some(lane) = lane.filter(|_| drives) {
+            known.lane.get_or_insert(lane);
+        }
+    }
+
     /// Who a clause is about; behind a comma the main one: "As the van turned, it touched the wall".
     fn subject(&mut self, mention: Mention, carry: &mut Carry, next: Option<&Chunk>) {
         let actor = mention.actor;
@@ -296,14 +421,14 @@ impl Parser<'_> {
             carry.joint = None;
             carry.clause += 1;
         }
-        let list = carry.has_verb && !carry.after_comma && !carry.fresh;
+        let list = carry.has_verb && !carry.after_comma && !carry.fresh && !carry.inverts;
         if list && !matches!(next, Some(Chunk::Verb(..) | Chunk::Be | Chunk::Relation(_) | Chunk::Relative)) {
             carry.last = Some(mention);
             carry.governed = true;
             return;
         }
         self.settle(actor, carry);
-        if carry.main.is_none() || carry.joint == Some(Joint::And) || !carry.relative {
+        if carry.main.is_none() || !carry.place && (carry.joint == Some(Joint::And) || !carry.relative) {
             carry.main = Some(mention.clone());
             carry.mains.push(actor);
         }
@@ -314,9 +439,11 @@ impl Parser<'_> {
         if let Some(relation) = carry.lead.take().filter(|_| actor != SUBJECT) {
             self.note(actor, relation);
         }
+        self.led_by(actor, carry);
+        let inverts = std::mem::take(&mut carry.inverts);
         carry.subject = Some(mention.clone());
         carry.last = Some(mention);
-        (carry.has_verb, carry.relative, carry.governed, carry.fresh) = (false, false, false, false);
+        (carry.has_verb, carry.relative, carry.governed, carry.fresh) = (inverts, false, false, false);
         (carry.be, carry.to, carry.progress) = (false, false, None);
         carry.negated = std::mem::take(&mut carry.nobody);
         (carry.frame, carry.stranger) = (None, false);

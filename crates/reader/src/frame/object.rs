@@ -87,7 +87,8 @@ impl Parser<'_> {
                 taken.sense,
                 Sense::Contact | Sense::RearEnd | Sense::Push | Sense::ReverseContact | Sense::ContactMade
             );
-        let passed = matches!(taken.sense, Sense::Act(Act::Follow | Act::Pass | Act::LaneChange)) && taken.passive;
+        let passed = taken.passive
+            && matches!(taken.sense, Sense::Approach | Sense::Act(Act::Follow | Act::Pass | Act::LaneChange));
         if !done_to && !passed {
             return;
         }
@@ -98,6 +99,12 @@ impl Parser<'_> {
         taken.who = Some(mention.actor);
         taken.with.clone_from(&mention.piece);
         (taken.passive, taken.end) = (true, placed.end);
+        // "was approached from behind by a van": who came from there.
+        let places: Vec<Relation> =
+            taken.relations.iter().filter(|(_, to)| to.is_none()).map(|(place, _)| *place).collect();
+        if passed && self.frames[frame].object == Some(SUBJECT) && mention.actor != SUBJECT {
+            places.into_iter().for_each(|place| self.note(mention.actor, place));
+        }
         // Nobody strikes itself: "the car behind it was struck by the car that followed".
         if self.frames[frame].object == Some(mention.actor) && mention.actor != SUBJECT {
             self.frames[frame].who = Some(self.world.twin(mention.actor));

@@ -15,7 +15,9 @@ pub(super) fn apply(frames: &mut Vec<Frame>, world: &mut World, tokens: &[Token]
 
 /// "It followed a van, and both vehicles stopped at a light": it and the only other one that is known by then, up to the crash.
 fn of_both(frames: &mut Vec<Frame>, world: &mut World, tokens: &[Token]) {
-    let crash = frames.iter().position(Frame::is_contact).unwrap_or(frames.len());
+    let met = |frame: &Frame| frame.is_contact() && frame.who.is_some() && frame.object.is_some();
+    let crash =
+        frames.iter().rposition(met).or_else(|| frames.iter().position(Frame::is_contact)).unwrap_or(frames.len());
     for number in (0..crash).rev() {
         let frame = &frames[number];
         let Some(pair) = frame.who.filter(|who| *who != SUBJECT && world.actors[*who].several) else { continue };
@@ -26,6 +28,11 @@ fn of_both(frames: &mut Vec<Frame>, world: &mut World, tokens: &[Token]) {
         let twin = Frame { who: Some(other), ..frame.clone() };
         frames[number].who = Some(SUBJECT);
         frames.insert(number + 1, twin);
+        let (heading, lane) = (world.actors[pair].heading, world.actors[pair].lane);
+        for actor in [SUBJECT, other] {
+            let known = &mut world.actors[actor];
+            (known.heading, known.lane) = (known.heading.or(heading), known.lane.or(lane));
+        }
         world.actors[pair].mentions = 0;
     }
 }
@@ -33,13 +40,17 @@ fn of_both(frames: &mut Vec<Frame>, world: &mut World, tokens: &[Token]) {
 /// Whether "both vehicles" is the subject of the verb that begins here.
 fn says_both(tokens: &[Token], first: usize) -> bool {
     let before = &tokens[first.saturating_sub(BOTH_BEFORE)..first];
-    let pair =
-        |words: &[Token]| words[0].text == "both" && matches!(words[1].text.as_str(), "vehicles" | "cars" | "trucks");
+    let pair = |words: &[Token]| {
+        matches!(words[0].text.as_str(), "both" | "two")
+            && matches!(words[1].text.as_str(), "vehicles" | "cars" | "trucks")
+    };
     // "Both vehicles ahead stopped" tells of two others.
     let small = |token: &Token| {
         let word = token.text.as_str();
-        matches!(word, "were" | "had" | "have" | "then" | "began" | "started" | "to" | "also" | "both")
-            || word.ends_with("ly")
+        matches!(
+            word,
+            "were" | "had" | "have" | "then" | "began" | "started" | "to" | "also" | "both" | "been" | "already"
+        ) || word.ends_with("ly")
     };
     before.windows(2).rposition(pair).is_some_and(|at| before[at + 2..].iter().all(small))
 }

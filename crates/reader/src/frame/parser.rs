@@ -2,10 +2,10 @@
 
 use super::Frame;
 use crate::chunk::{Chunk, Joint, Piece, Placed, Spot, chunks};
-use crate::lexicon::{Lexicon, Occupant, Progress, Relation, Sense};
+use crate::lexicon::{Form, Lexicon, Occupant, Progress, Relation, Sense};
 use crate::token::{Sentence, Token};
 use crate::world::{Actor, SUBJECT, World};
-use recrash_model::account::{Act, Kind, KindGroup, LeftRight};
+use recrash_model::account::{Act, Compass, Kind, KindGroup, LaneWord, LeftRight};
 
 pub(super) struct Parser<'a> {
     pub(super) tokens: &'a [Token],
@@ -17,6 +17,9 @@ pub(super) struct Parser<'a> {
     /// Words that nobody knows may tell the contact: where no other words do.
     pub(super) guesses: bool,
 }
+
+/// "was operating on public roads in autonomous mode": so near stands what drives it. [tokens]
+const MODE_WITHIN: usize = 8;
 
 /// What is carried from chunk to chunk.
 #[derive(Default)]
@@ -58,6 +61,8 @@ pub(super) struct Carry {
     pub(super) after_comma: bool,
     /// Who began, tried or wished what the next verb tells.
     pub(super) lead_who: Option<Mention>,
+    /// What the next verb tells is told of a noun in passing: "struck by a van attempting to pass".
+    pub(super) lead_describes: bool,
     /// Number of the clause.
     pub(super) clause: u32,
     /// Who goes on behind a clause between commas: "It stopped and, after a bus had gone by, turned".
@@ -84,10 +89,16 @@ pub(super) struct Carry {
     pub(super) nobody: bool,
     /// Where who is named next is: "From the right, a van ..."
     pub(super) lead: Option<Relation>,
+    /// Which way who is named next goes: "Northbound on Elm Street, a van ..." Whether the direction is a street's.
+    pub(super) lead_heading: Option<((Compass, usize, usize), bool)>,
+    /// In which lane who is named next is: "In the left lane, a van ..."
+    pub(super) lead_lane: Option<(LaneWord, usize, usize)>,
     /// Where the clause names who it is about stand words that nobody knows: "a panel fell off".
     pub(super) stranger: bool,
     /// "Between" waits for the second of a pair.
     pub(super) pair: bool,
+    /// The verb stands before its subject: "Behind it stood a van", "Parked at the curb was a van".
+    pub(super) inverts: bool,
     /// A thing that is attached to who is named next.
     pub(super) attached: Option<Actor>,
 }
@@ -112,6 +123,7 @@ impl Parser<'_> {
         }
         self.share(begun);
         self.announce_fall(begun);
+        self.announce_touch(begun);
         if let Some(main) = &carry.main {
             self.world.topic = main.actor;
             if !self.world.actors[main.actor].acts() && main.actor != SUBJECT {
@@ -152,6 +164,48 @@ impl Parser<'_> {
         known.announced |= meets && !known.several && known.mentions == 1 && known.kind.is_some_and(rides);
     }
 
+    /// "A van struck it on Elm Street. It had stopped for a van that was backing up": the first sentence tells the touch and nothing that led
+    /// to it, and the story brings the other one on anew.
+    fn announce_touch(&mut self, begun: usize) {
+        let begun = begun.min(self.frames.len());
+        // "It was operating in autonomous mode": no story yet.
+        let tells = |frame: &Frame| {
+            let plain = frame.act() == Some(Act::Follow) && frame.heading.is_none() && frame.lane.is_none();
+            let of_mode = |token: &Token| matches!(token.text.as_str(), "mode" | "autonomously" | "itself");
+            let idle = plain && self.tokens[frame.end..].iter().take(MODE_WITHIN).any(of_mode);
+            frame.act().is_some() && frame.happened() && !idle
+        };
+        if self.frames[..begun].iter().any(tells) {
+            return;
+        }
+        let frames = &self.frames[begun..];
+        let Some(touch) = frames.iter().find(|frame| frame.is_contact()) else { return };
+        // "It and a van collided": a frame of each.
+        let twin = frames.iter().find(|frame| frame.first == touch.first && frame.who != touch.who);
+        let (Some(who), Some(object)) = (touch.who, touch.object.or(twin.and_then(|twin| twin.who))) else { return };
+        let other = match (who, object) {
+            (SUBJECT, other) | (other, SUBJECT) if other != SUBJECT => other,
+            _ => return,
+        };
+        let leads = |frame: &Frame| {
+            frame.act().is_some_and(|act| act != Act::Hold) && frame.happened() && !frame.aside && !frame.is_contact()
+        };
+        let rides = |kind: Kind| {
+            kind.is_vehicle()
+                || matches!(kind.group(), KindGroup::Cyclist | KindGroup::Motorcycle)
+                || kind == Kind::Gate
+        };
+        let told = frames.iter().any(leads);
+        let rear_ends = touch.sense == Sense::RearEnd && who == other;
+        let known = &mut self.world.actors[other];
+        if !told && !known.several && known.mentions == 1 && known.kind.is_some_and(rides) {
+            known.announced = true;
+            if rear_ends {
+                known.place(Relation::Behind, self.sentence);
+            }
+        }
+    }
+
     /// Reads one chunk.
     fn step(&mut self, all: &[Placed], at: usize, carry: &mut Carry) {
         let placed = &all[at];
@@ -162,12 +216,16 @@ impl Parser<'_> {
             Chunk::Piece(piece) => self.piece(piece, all, at, carry),
             Chunk::Pronoun => self.pronoun(all, at, carry),
             Chunk::Relative => self.relative(all, at, carry),
-            Chunk::Comma => self.comma(placed.first, self.behind_small_words(all, at), carry),
+            Chunk::Comma => {
+                self.leave_place(carry, self.goes_on(all, at));
+                self.comma(placed.first, self.behind_small_words(all, at), carry)
+            }
             Chunk::Word => self.word(all, at, carry),
             other => {
                 match other {
                     Chunk::Verb(sense, form) => self.verb(*sense, *form, all, at, carry),
                     Chunk::Be if self.brings_on(all, at, carry) => {}
+                    Chunk::Be if self.inverts(all, at) => carry.inverts = true,
                     Chunk::Be => carry.be = true,
                     Chunk::Not => self.not(placed, carry),
                     Chunk::Relation(relation) => self.relation(*relation, placed, carry, next),
@@ -178,6 +236,10 @@ impl Parser<'_> {
                         self.relate(relation, Some(SUBJECT), carry);
                     }
                     Chunk::Side(side) => self.side(*side, carry),
+                    // "so that a bus lane ran between them": what a road does.
+                    Chunk::Lane(_) if carry.fresh && carry.preposition.is_none() && begins_its_verb(next) => {
+                        (carry.stranger, carry.subject) = (true, None);
+                    }
                     Chunk::Lane(lane) => self.lane(*lane, placed, carry),
                     Chunk::Spot(spot) => self.spot(*spot, placed, carry),
                     Chunk::Preposition(word) => preposition(word, carry),
@@ -213,12 +275,25 @@ impl Parser<'_> {
         all[at + 1..].iter().find(|placed| !small(placed)).map(|placed| &placed.chunk)
     }
 
+    /// Whether behind a comma it is told what somebody did besides: ", and had slowed", ", so it slowed".
+    fn goes_on(&self, all: &[Placed], at: usize) -> bool {
+        const SMALL: [&str; 6] = ["and", "then", "had", "also", "so", "but"];
+        let small = |placed: &&Placed| SMALL.contains(&self.tokens[placed.first].text.as_str());
+        let next = all[at + 1..].iter().find(|placed| !small(placed)).map(|placed| &placed.chunk);
+        matches!(next, Some(Chunk::Verb(_, Form::Past | Form::Present) | Chunk::Pronoun))
+    }
+
     fn not(&self, placed: &Placed, carry: &mut Carry) {
         carry.negated = true;
         // "Neither car made contact": said before who it is.
         let word = self.tokens[placed.first].text.as_str();
         carry.nobody |= matches!(word, "neither" | "nor") || carry.fresh && matches!(word, "no" | "nothing" | "nobody");
     }
+}
+
+/// Whether a finite verb begins here.
+const fn begins_its_verb(next: Option<&Chunk>) -> bool {
+    matches!(next, Some(Chunk::Verb(_, Form::Past | Form::Present) | Chunk::Be))
 }
 
 fn preposition(word: &'static str, carry: &mut Carry) {

@@ -1,15 +1,16 @@
 //! Who is meant by `it`, `its` and a door that is nobody's.
 
+use super::Frame;
 use super::parser::{Carry, Parser};
 use super::row::transitive;
 use crate::chunk::{Chunk, Joint, Placed};
-use crate::lexicon::{Form, Sense};
+use crate::lexicon::{Form, Part, Sense};
 use crate::world::{Actor, SUBJECT};
 use recrash_model::account::{Act, Kind};
 
 impl Parser<'_> {
     /// Who is meant by `it` and `its`.
-    pub(super) fn its(&self, carry: &Carry) -> Actor {
+    pub(super) fn its(&self, word: &str, carry: &Carry) -> Actor {
         // "The bus was shoved back, and its bumper touched": whom another one moves.
         let pushed = self.frames.last().filter(|frame| {
             carry.fresh && frame.sentence == self.sentence && frame.sense == Sense::Push && frame.happened()
@@ -17,7 +18,7 @@ impl Parser<'_> {
         if let Some(pushed) = pushed.and_then(|frame| frame.object) {
             return pushed;
         }
-        let actor = self.of_sentence(carry);
+        let actor = self.of_sentence(matches!(word, "it" | "its" | "itself"), carry);
         // "The van drifted over and hit its right side": nobody hits itself.
         let hits = carry.frame.map(|frame| &self.frames[frame]).is_some_and(|frame| {
             matches!(frame.sense, Sense::Contact | Sense::RearEnd | Sense::ReverseContact | Sense::Push)
@@ -72,7 +73,7 @@ impl Parser<'_> {
         let stands = all[at + 1..].iter().take(2).any(|placed| {
             matches!(placed.chunk, Chunk::Verb(Sense::Act(Act::Hold | Act::Stop | Act::Park) | Sense::Parked, _))
         });
-        let meets = |frame: &&crate::frame::Frame| {
+        let meets = |frame: &&Frame| {
             frame.is_contact() || matches!(frame.sense, Sense::Approach | Sense::Act(Act::Pass)) && frame.happened()
         };
         let last = self.frames.last().filter(|frame| frame.sentence == self.sentence).filter(meets)?;
@@ -90,8 +91,28 @@ impl Parser<'_> {
                         && matches!(frame.act(), Some(Act::PullOut | Act::Reverse | Act::OpenDoor))
                 })
         };
-        let waits = stands || from_a_stand;
+        let waits = stands || from_a_stand || self.goes_on_struck(last, all, at);
         (carry.fresh && carry.joint == Some(Joint::While) && waits && struck).then_some(SUBJECT)
+    }
+
+    /// "A van struck its rear as it was setting off", "A cyclist ran into the AV as it drove east": who was struck from behind went on, and
+    /// so did who was on its way.
+    fn goes_on_struck(&self, last: &Frame, all: &[Placed], at: usize) -> bool {
+        let small = |placed: &&Placed| matches!(placed.chunk, Chunk::Be | Chunk::Word);
+        let verb = at + 1 + all[at + 1..].iter().take(3).take_while(small).count();
+        let Some(Chunk::Verb(sense, _)) = all.get(verb).map(|placed| &placed.chunk) else { return false };
+        let words = &self.tokens[last.first..all[at].first];
+        let behind = words.windows(2).any(|pair| pair[0].text == "from" && pair[1].text == "behind");
+        let rear = last.on.as_ref().is_some_and(|piece| piece.parts.contains(&Part::Rear));
+        let from_behind = (last.sense == Sense::RearEnd || rear || behind) && last.sense != Sense::ReverseContact;
+        let forward = matches!(sense, Sense::Sided(Act::Turn, _))
+            || matches!(
+                sense,
+                Sense::Act(Act::Enter | Act::Slow | Act::SetOff | Act::Turn | Act::Follow | Act::Accelerate)
+            );
+        let on_its_way = *sense == Sense::Act(Act::Follow)
+            && all[verb + 1..].iter().take(3).any(|placed| matches!(placed.chunk, Chunk::Compass(_) | Chunk::Lane(_)));
+        from_behind && forward || on_its_way
     }
 
     /// "It came up to a stopped van as it was riding between the lanes": who is called stopped does not ride; who came up does.
@@ -168,7 +189,12 @@ impl Parser<'_> {
                 && matches!(frame.act(), Some(Act::Follow | Act::Pass))
                 && transitive(frame.sense)
         });
-        let place = matches!(carry.preposition, Some("toward" | "towards" | "past" | "around" | "against"));
+        // "slowed for it", "yielded to it": nobody does so for itself.
+        let gives_way = frame.is_some_and(|frame| {
+            matches!(frame.sense, Sense::Yield | Sense::Act(Act::Stop | Act::Hold | Act::Slow)) && !carry.fresh
+        });
+        let place = matches!(carry.preposition, Some("toward" | "towards" | "past" | "around" | "against"))
+            || gives_way && matches!(carry.preposition, Some("for" | "to"));
         // "made contact with a van stopped behind it": it is the van that stands there.
         let of_object = frame.zip(carry.last.as_ref()).is_some_and(|(frame, last)| {
             carry.relation.is_some()
@@ -178,6 +204,7 @@ impl Parser<'_> {
                 && last.piece.is_none()
         });
         if of_object
+            || self.stands_with(carry)
             || doer != Some(actor)
             || !(carry.relation.is_some() || place || takes && carry.preposition.is_none())
         {
@@ -189,12 +216,37 @@ impl Parser<'_> {
         }
     }
 
+    /// "waited with a van behind it": the noun that stands behind "with" is placed, and not who waits.
+    pub(super) fn stands_with(&self, carry: &Carry) -> bool {
+        let Some(last) = carry.last.as_ref().filter(|last| last.piece.is_none() && last.actor != SUBJECT) else {
+            return false;
+        };
+        let touches = carry
+            .frame
+            .is_some_and(|frame| self.frames[frame].is_contact() || self.frames[frame].sense == Sense::Headline);
+        self.is_behind_with(last.end) && !touches && carry.governed | carry.frame.is_none()
+    }
+
+    /// Whether the noun that ends here stands behind "with": "with the large van".
+    pub(super) fn is_behind_with(&self, end: usize) -> bool {
+        let from = end.saturating_sub(5);
+        let article = |at: usize| matches!(self.tokens[at].text.as_str(), "a" | "an" | "another" | "two" | "the");
+        let with = self.tokens[from..end].iter().rposition(|token| token.text == "with").map(|at| from + at);
+        with.is_some_and(|with| with + 1 < end && article(with + 1))
+    }
+
     /// Who the sentence is about, as far as it can be meant by a pronoun.
-    fn of_sentence(&self, carry: &Carry) -> Actor {
+    fn of_sentence(&self, single: bool, carry: &Carry) -> Actor {
         let of_sentence = carry.main.as_ref().or(carry.subject.as_ref()).map(|mention| mention.actor);
+        // "Vans stood on its right. It reversed": one thing is no group, and nobody who walks.
+        let may_be = |actor: Actor| {
+            let known = &self.world.actors[actor];
+            actor == SUBJECT || !(single && (known.several || known.kind == Some(Kind::Pedestrian)))
+        };
         match of_sentence {
-            Some(actor) if actor == SUBJECT || self.world.actors[actor].acts() => actor,
-            _ => self.world.pronoun(),
+            Some(actor) if (actor == SUBJECT || self.world.actors[actor].acts()) && may_be(actor) => actor,
+            _ if may_be(self.world.pronoun()) => self.world.pronoun(),
+            _ => SUBJECT,
         }
     }
 }

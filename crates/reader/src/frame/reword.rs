@@ -17,9 +17,11 @@ pub(super) fn apply(tokens: &mut Vec<Token>) {
     change_lanes(tokens);
     name_aliases(tokens);
     stand::apply(tokens);
-    turn_meanwhile(tokens);
+    super::maneuver::apply(tokens);
     use_lanes(tokens);
     name_pickups_and_cabs(tokens);
+    go_on_to(tokens);
+    turn_out_to_be(tokens);
     drive_as_company(tokens);
     part_owners(tokens);
 }
@@ -309,44 +311,28 @@ const OF_LANES: [&str; 27] = [
 /// So many words a lane that is left may have: "the lane immediately to the left". [tokens]
 const LANE_WORDS: usize = 6;
 
-/// "slowed during an unprotected left turn", "was midway through a right turn": told by a noun, it was turning.
-fn turn_meanwhile(tokens: &mut [Token]) {
-    const WORDS: usize = 5;
+/// "went on to turn left", "set out to pass", "set about turning": it did, or began to.
+fn go_on_to(tokens: &mut [Token]) {
     for at in 0..tokens.len().saturating_sub(3) {
         let word = |ahead: usize| tokens.get(at + ahead).map_or("", |token| token.text.as_str());
-        let (lead, is_clause) = match (word(0), word(1), word(2), word(3)) {
-            ("during", ..) => (1, true),
-            ("while" | "still", "in", ..) => (2, true),
-            ("midway" | "halfway" | "partway", "through" | "into", ..) => (2, false),
-            ("in", "the", "middle" | "midst", "of") => (4, false),
+        let (verb, small) = match (word(0), word(1), word(2)) {
+            ("go" | "move" | "carry", "on", "to") => ("proceed", 1),
+            ("went" | "moved" | "carried" | "gone", "on", "to") => ("proceeded", 1),
+            ("going" | "moving" | "carrying", "on", "to") => ("proceeding", 1),
+            ("set" | "sets", "out", "to") => ("attempted", 1),
+            ("setting", "out", "to") => ("attempting", 1),
+            ("set" | "sets", "about", verb) if verb.ends_with("ing") => ("began", 1),
+            ("undertook", "to", _) => ("attempted", 0),
+            ("undertaking", "to", _) => ("attempting", 0),
             _ => continue,
         };
-        let from = at + lead;
-        if !tokens.get(from).is_some_and(|token| matches!(token.text.as_str(), "a" | "an" | "the" | "its")) {
-            continue;
-        }
-        let Some(end) = (from + 1..tokens.len().min(from + WORDS)).find(|&turn| tokens[turn].text == "turn") else {
-            continue;
-        };
-        let between: Vec<&str> = tokens[from + 1..end].iter().map(|token| token.text.as_str()).collect();
-        let known =
-            |word: &&str| matches!(*word, "left" | "right" | "hand" | "unprotected" | "protected" | "slow" | "wide");
-        // "the turn lane", "a left turn phase", "the left turn of the van".
-        let of_turn = tokens.get(end + 1).is_some_and(|next| OF_TURNS.contains(&next.text.as_str()));
-        if !between.iter().all(known) || of_turn {
-            continue;
-        }
-        let side = between.iter().copied().find(|word| matches!(*word, "left" | "right")).map(str::to_owned);
-        if is_clause {
-            "while".clone_into(&mut tokens[at].text);
-            tokens[at + 1..from].iter_mut().for_each(|token| "completely".clone_into(&mut token.text));
-        } else {
-            tokens[at..from].iter_mut().for_each(|token| "completely".clone_into(&mut token.text));
-        }
-        tokens[from..=end].iter_mut().for_each(|token| "completely".clone_into(&mut token.text));
-        "turning".clone_into(&mut tokens[from].text);
-        if let Some(side) = side {
-            tokens[from + 1].text = side;
+        // "set out to the west" is no purpose.
+        let next = at + 2 + usize::from(small == 1 && word(2) == "to");
+        let next = if small == 0 { at + 2 } else { next };
+        let does = Lexicon::get().longest(tokens, next, |meaning| matches!(meaning, Meaning::Verb(..)));
+        if does.is_some() && !tokens[next].capital {
+            verb.clone_into(&mut tokens[at].text);
+            tokens[at + 1..=at + small].iter_mut().for_each(|token| "completely".clone_into(&mut token.text));
         }
     }
 }
@@ -384,26 +370,29 @@ fn use_lanes(tokens: &mut [Token]) {
     }
 }
 
-/// What a turn is part of the name of, or whose it is: "the left turn phase", "the right turn of the van".
-const OF_TURNS: [&str; 17] = [
-    "lane",
-    "lanes",
-    "only",
-    "pocket",
-    "pockets",
-    "bay",
-    "bays",
-    "signal",
-    "signals",
-    "phase",
-    "arrow",
-    "light",
-    "interval",
-    "movement",
-    "movements",
-    "of",
-    "by",
-];
+/// "an object, which turned out to be a chair", "an object, later identified as a chair": apparently a chair.
+fn turn_out_to_be(tokens: &mut [Token]) {
+    const SAYS: [&[&str]; 9] = [
+        &["which", "turned", "out", "to", "be"],
+        &["that", "turned", "out", "to", "be"],
+        &["which", "proved", "to", "be"],
+        &["later", "identified", "as"],
+        &["subsequently", "identified", "as"],
+        &["later", "determined", "to", "be"],
+        &["later", "found", "to", "be"],
+        &["namely"],
+        &["presumably"],
+    ];
+    for at in 0..tokens.len() {
+        let says = SAYS.iter().find(|says| {
+            says.iter().enumerate().all(|(ahead, word)| tokens.get(at + ahead).is_some_and(|token| token.text == *word))
+        });
+        let noun = |length: usize| tokens.get(at + length).is_some_and(|next| matches!(next.text.as_str(), "a" | "an"));
+        if let Some(says) = says.filter(|says| noun(says.len())) {
+            tokens[at..at + says.len()].iter_mut().for_each(|token| "apparently".clone_into(&mut token.text));
+        }
+    }
+}
 
 /// "Acme was proceeding straight", in a report of that company: its vehicle was.
 fn drive_as_company(tokens: &mut [Token]) {

@@ -1,7 +1,7 @@
 //! What stands before and behind in the row of chunks, and what verbs and kinds allow.
 
 use super::parser::{Carry, Parser};
-use crate::chunk::{Article, Chunk, Noun, Placed};
+use crate::chunk::{Article, Chunk, Joint, Noun, Placed};
 use crate::lexicon::{Form, Relation, Sense};
 use crate::token::TokenKind;
 use crate::world::{Actor, SUBJECT, same_kind};
@@ -250,8 +250,44 @@ impl Parser<'_> {
         past && other && part.is_some() && !carry.has_verb
     }
 
+    /// "another vehicle turning left, a sedan, drove up", "was hit by another vehicle, a taxi", "struck an object, apparently a chair, in the road":
+    /// what somebody is who was named by a word that says nothing of it.
+    fn apposed_late(&self, noun: &Noun, all: &[Placed], at: usize, carry: &Carry) -> Option<Actor> {
+        let kind =
+            noun.kind.filter(|_| noun.article == Article::Indefinite && noun.occupant.is_none() && !noun.several)?;
+        let comma = all[..at].iter().rposition(|placed| !matches!(placed.chunk, Chunk::Word))?;
+        let between = all[comma + 1..at].iter().all(|placed| {
+            let word = self.tokens[placed.first].text.as_str();
+            word.ends_with("ly") || matches!(word, "perhaps" | "likely")
+        });
+        let ends = matches!(all.get(at + 1).map(|placed| &placed.chunk), None | Some(Chunk::Comma));
+        let generic = |actor: Actor| {
+            let known = self.world.actors[actor].kind.filter(|_| actor != SUBJECT && !self.world.actors[actor].several);
+            known.is_some_and(|known| {
+                matches!(known, Kind::Vehicle | Kind::Object | Kind::Animal) && same_kind(known, kind)
+            })
+        };
+        if !matches!(all[comma].chunk, Chunk::Comma) || !between {
+            return None;
+        }
+        let named = comma.checked_sub(1).map(|at| &all[at]);
+        let just = carry.last.as_ref().filter(|last| {
+            last.piece.is_none()
+                && named.is_some_and(|named| named.end == last.end && matches!(named.chunk, Chunk::Noun(_)))
+        });
+        let goes_on =
+            || matches!(all.get(at + 2).map(|placed| &placed.chunk), Some(Chunk::Verb(_, Form::Past) | Chunk::Be));
+        let about = carry.subject.as_ref().filter(|_| !carry.has_verb && ends && goes_on());
+        let apart = ends || comma + 1 < at;
+        let named = just.filter(|_| apart).or(about).map(|mention| mention.actor);
+        named.filter(|actor| generic(*actor))
+    }
+
     /// Who a noun between commas says more of: "the subject vehicle, a box truck, stood".
     pub(super) fn apposed(&self, noun: &Noun, all: &[Placed], at: usize, carry: &Carry) -> Option<Actor> {
+        if let Some(actor) = self.apposed_late(noun, all, at, carry) {
+            return Some(actor);
+        }
         let before = at.checked_sub(2).map(|two| (&all[two].chunk, &all[two + 1].chunk))?;
         let (Chunk::Noun(named), Chunk::Comma) = before else { return None };
         let subject = carry.subject.as_ref().filter(|_| !carry.has_verb)?;
@@ -312,9 +348,14 @@ pub(super) fn looks_somewhere(all: &[Placed], at: usize) -> bool {
 
 /// Whether a finite verb stands behind in the same clause.
 pub(super) fn another_finite(all: &[Placed], at: usize) -> bool {
-    for placed in &all[at + 1..] {
-        match &placed.chunk {
+    let chunk = |at: usize| all.get(at).map(|placed| &placed.chunk);
+    for behind in at + 1..all.len() {
+        match &all[behind].chunk {
+            // "stopped to let it pass": "let" is its own past.
+            Chunk::Verb(..) if matches!(all[behind - 1].chunk, Chunk::Preposition("to")) => {}
             Chunk::Verb(_, Form::Past | Form::Present) | Chunk::Be => return true,
+            // "a van parked behind and to the left of it reversed".
+            Chunk::Joint(Joint::And) if matches!(chunk(behind + 1), Some(Chunk::Relation(_))) => {}
             Chunk::Joint(_) | Chunk::Comma | Chunk::Relative => return false,
             _ => {}
         }
@@ -362,6 +403,8 @@ pub(super) fn relation_behind(all: &[Placed], at: usize) -> Option<Relation> {
         {
             true
         }
+        // "the vehicle waiting in front of it".
+        Some(Chunk::Verb(Sense::Act(Act::Hold), Form::Ing)) => matches!(all[at - 1].chunk, Chunk::Noun(_)),
         // "The van stopped in front of it reversed": its verb stands behind.
         Some(Chunk::Verb(Sense::Act(Act::Stop | Act::Hold) | Sense::Parked, Form::Past))
             if matches!(all[at - 1].chunk, Chunk::Noun(_)) =>
@@ -381,7 +424,21 @@ pub(super) fn relation_behind(all: &[Placed], at: usize) -> Option<Relation> {
     ) {
         return Some(*relation);
     }
+    // "the vehicle that was following it", "the vehicle trailing it".
+    if let (Chunk::Verb(Sense::Act(Act::Follow), Form::Ing), Some(Chunk::Pronoun)) =
+        (&all[further - 1].chunk, all.get(further).map(|p| &p.chunk))
+    {
+        return Some(Relation::Behind);
+    }
     match (all.get(at + 1).map(|p| &p.chunk)?, all.get(at + 2).map(|p| &p.chunk)) {
+        // "the vehicle coming the other way".
+        (Chunk::Relation(Relation::Opposite), _) => Some(Relation::Opposite),
+        (
+            Chunk::Verb(Sense::Act(Act::Follow) | Sense::Approach, Form::Ing),
+            Some(Chunk::Relation(Relation::Opposite)),
+        ) => Some(Relation::Opposite),
+        // "the vehicle next to it".
+        (Chunk::Relation(relation), Some(Chunk::Pronoun)) => Some(*relation),
         // "the vehicle trailing the AV".
         (Chunk::Verb(Sense::Act(Act::Follow), Form::Ing), Some(Chunk::Noun(noun)))
             if noun.subject && matches!(&all[at].chunk, Chunk::Noun(named) if named.occupant.is_none()) =>

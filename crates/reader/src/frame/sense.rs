@@ -252,7 +252,9 @@ fn sits_inside(parser: &Parser<'_>, verb: &Spoken<'_>, _carry: &Carry) -> Option
 
 /// "a bicycle ridden by a courier" passes nobody.
 fn is_ridden(parser: &Parser<'_>, verb: &Spoken<'_>, _carry: &Carry) -> Option<Sense> {
-    let ridden = verb.sense == Sense::Act(Act::Pass) && matches!(verb.word(parser), "ridden" | "driven");
+    let by = matches!(verb.next(), Some(Chunk::Preposition("by"))) && verb.form == Form::Past;
+    let ridden = verb.sense == Sense::Act(Act::Pass) && matches!(verb.word(parser), "ridden" | "driven")
+        || by && verb.word(parser) == "operated";
     ridden.then_some(Sense::Other)
 }
 

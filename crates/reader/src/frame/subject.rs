@@ -1,5 +1,6 @@
 //! Of whom a verb is told, and what its own words name besides.
 
+use super::Frame;
 use super::parser::{Carry, Mention, Parser};
 use super::row::Spoken;
 use crate::chunk::{Chunk, Joint, Placed, Spot};
@@ -81,7 +82,7 @@ impl Parser<'_> {
     /// Verbs whose subject is named only now: "While stopped, the van ...".
     pub(super) fn settle(&mut self, actor: Actor, carry: &mut Carry) {
         // "While stopped at a light, a man began to cross": of somebody new it is not told.
-        let new = actor != SUBJECT && carry.main.is_none() && {
+        let new = actor != SUBJECT && carry.main.is_none() && !carry.inverts && {
             let known = &self.world.actors[actor];
             // Only the headline has named it so far.
             let named_only = !known.acted && self.world.topic == SUBJECT && known.mentions == 2;
@@ -110,6 +111,7 @@ impl Parser<'_> {
                 && self.world.topic == SUBJECT
                 && matches!(waiting.sense, Sense::Act(Act::Pass | Act::Enter) | Sense::Approach)
                 && waiting.object != Some(SUBJECT)
+                && !self.comes_so(waiting)
                 && !waiting.relations.iter().any(|(_, to)| *to == Some(SUBJECT));
             // "While driving in its lane, a man ...": who walks has none.
             let lane = self.tokens[waiting.first..].iter().take(NOUN_WORDS).any(|token| token.text == "lane");
@@ -124,11 +126,44 @@ impl Parser<'_> {
             }
             let who = if dangles { self.world.topic } else { actor };
             self.frames[pending].who = Some(who);
+            let places: Vec<Relation> = self.frames[pending].relations.iter().map(|(place, _)| *place).collect();
+            if who != SUBJECT && self.comes_so(&self.frames[pending]) {
+                places.into_iter().for_each(|place| self.note(who, place));
+            }
+            // "Driving in the left lane, it ...".
+            if let Some(lane) = self.frames[pending].lane.filter(|(_, first, _)| self.stands_in(*first)) {
+                self.world.actors[who].lane.get_or_insert(lane);
+            }
             // "While turning left from southbound Oak Street, it ...".
             if let (Some(heading), false) = (self.frames[pending].heading, self.frames[pending].onto) {
                 self.world.actors[who].heading.get_or_insert(heading);
             }
         }
+    }
+
+    /// "in the left lane": no way into one.
+    fn stands_in(&self, lane: usize) -> bool {
+        let before = self.tokens[lane.saturating_sub(3)..lane].iter().rev().map(|token| token.text.as_str());
+        before
+            .clone()
+            .find(|word| matches!(*word, "in" | "within" | "using" | "into" | "onto" | "to" | "from" | "toward" | "of"))
+            .is_some_and(|word| matches!(word, "in" | "within" | "using"))
+    }
+
+    /// "Approaching from behind, a van", "Overtaking on the left, a van", "While passing, a van", told of one that stands: who is named next
+    /// comes so.
+    fn comes_so(&self, waiting: &Frame) -> bool {
+        let from = |relation: Relation| !matches!(relation, Relation::Ahead | Relation::Beside | Relation::Same);
+        let comes = matches!(waiting.sense, Sense::Approach | Sense::Act(Act::Pass | Act::Enter | Act::Follow));
+        let placed =
+            waiting.relations.iter().any(|(relation, to)| from(*relation) && to.is_none_or(|to| to == SUBJECT));
+        let at_once = matches!(self.tokens[waiting.first + 1].text.as_str(), "on" | "to" | "from");
+        let aside = waiting.act() == Some(Act::Pass) && waiting.object.is_none() && waiting.side.is_some() && at_once;
+        let mut told = self.frames.iter().rev().filter(|frame| frame.who == Some(SUBJECT) && frame.happened());
+        let stands = told.find(|frame| frame.act().is_some()).is_some_and(|frame| {
+            matches!(frame.act(), Some(Act::Hold | Act::Stop | Act::Park)) && frame.sentence < self.sentence
+        });
+        comes && (placed || aside) || stands && waiting.act() == Some(Act::Pass) && waiting.object.is_none()
     }
 
     /// Of whom a verb is told.
@@ -265,6 +300,14 @@ impl Parser<'_> {
         {
             return Some(subject.clone());
         }
+        // "came up behind it driving fast": who comes does.
+        let comes = carry.frame.map(|frame| &self.frames[frame]).filter(|frame| {
+            let moves = matches!(frame.sense, Sense::Approach | Sense::Act(Act::Follow));
+            moves && sense == Sense::Act(Act::Follow) && last.actor == SUBJECT && !carry.after_comma
+        });
+        if let Some(actor) = comes.and_then(|frame| frame.who).filter(|who| *who != SUBJECT) {
+            return Some(Mention { actor, piece: None, person: None, end: placed.first });
+        }
         let other = last.actor != SUBJECT && !carry.began;
         // "braked for a man in the road, running towards it": nobody runs towards itself.
         let of_subject = carry.subject.as_ref().is_some_and(|subject| subject.actor == SUBJECT);
@@ -331,6 +374,26 @@ impl Parser<'_> {
             matches!(pair[0].chunk, Chunk::Joint(Joint::And)) && matches!(pair[1].chunk, Chunk::Verb(..) | Chunk::Word)
         });
         (of_other && !row).then(|| described.clone())
+    }
+
+    /// "stopped for a procession crossing the street", "behind a contraption turning left": of a noun that nobody knows.
+    pub(super) fn is_of_unknown(&self, verb: &Spoken<'_>, carry: &Carry) -> bool {
+        let moves =
+            matches!(verb.sense, Sense::Act(_) | Sense::Sided(..) | Sense::ReverseContact) && verb.form == Form::Ing;
+        let Some([.., governs, article, noun]) = verb.all.get(..verb.at) else { return false };
+        let word = |placed: &Placed| self.tokens[placed.first].text.as_str();
+        let plain = matches!(noun.chunk, Chunk::Word)
+            && matches!(article.chunk, Chunk::Word)
+            && matches!(word(article), "a" | "an");
+        let place = super::adverbs::PLACES.contains(&word(noun))
+            || self.tokens[noun.first].capital
+            || word(noun).ends_with("ly");
+        let of = match governs.chunk {
+            Chunk::Preposition(preposition) => matches!(preposition, "for" | "to" | "around"),
+            Chunk::Relation(relation) => matches!(relation, Relation::Behind | Relation::Ahead | Relation::Beside),
+            _ => false,
+        };
+        moves && plain && of && !place && !carry.be && !carry.after_comma
     }
 
     /// "in a queue of traffic", "in a line of cars".

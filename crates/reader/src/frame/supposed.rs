@@ -15,7 +15,12 @@ pub(super) fn apply(frames: &mut [Frame], tokens: &[Token], sentences: &[Sentenc
     for frame in frames {
         let sentence = sentences[frame.sentence];
         let before = &tokens[sentence.first..frame.first];
-        if behind_if(before) || behind_would_have(before) || behind_expected(before) || behind_fear(before) {
+        if behind_if(before)
+            || behind_would_have(before)
+            || behind_expected(before)
+            || behind_fear(before)
+            || behind_purpose(before)
+        {
             frame.progress = Progress::Wished;
         }
     }
@@ -50,6 +55,16 @@ fn behind_fear(before: &[Token]) -> bool {
     // "was unable to avoid hitting it": so it did.
     let in_vain = (2..6).any(|back| matches!(word(back), "unable" | "not" | "couldn" | "failed" | "late"));
     feared || word(1).starts_with("avoid") && !in_vain
+}
+
+/// "stopped so that a van could turn": what it made room for.
+fn behind_purpose(before: &[Token]) -> bool {
+    let so = before.iter().rposition(|token| matches!(token.text.as_str(), "so" | "order"));
+    let Some(clause) = so.map(|at| &before[at..]) else { return false };
+    let modal = |token: &Token| matches!(token.text.as_str(), "could" | "might" | "would" | "can");
+    let that = clause.get(1).is_some_and(|next| next.text == "that");
+    let so = clause[0].text == "so" && so.is_some_and(|at| at > 0 && before[at - 1].text != ",");
+    (that || so) && clause.iter().any(modal) && !clause.iter().any(|token| token.kind == TokenKind::Mark)
 }
 
 /// "predicted that it would wait", and not all that stands behind it.

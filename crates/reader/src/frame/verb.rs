@@ -18,12 +18,20 @@ impl Parser<'_> {
         if carry.place && carry.subject.is_none() {
             return;
         }
+        if is_of_a_road(all, at, self.tokens[all[at].first].text.as_str()) {
+            carry.be = false;
+            return;
+        }
         if self.is_attached(all, at) {
             carry.attached = carry.last.as_ref().filter(|last| last.piece.is_none()).map(|last| last.actor);
             carry.be = false;
             return;
         }
         let mut verb = Spoken { sense, form, all, at };
+        let stands = matches!(sense, Sense::Act(Act::Hold | Act::Stop | Act::Follow) | Sense::Approach);
+        if stands && form == Form::Past && !carry.be && self.inverts(all, at) {
+            (carry.inverts, carry.subject, carry.last) = (true, None, None);
+        }
         self.comes_loose(&verb, carry);
         let stops = verb.sense == Sense::Act(Act::Stop);
         verb.sense = self.sense_here(&verb, carry);
@@ -54,7 +62,8 @@ impl Parser<'_> {
         let beside = so.map(|(mention, _)| mention).or(stood).or_else(|| self.beside(&verb, carry));
         let who =
             beside.or_else(|| self.who_of(verb.sense, form, verb.placed(), carry, purpose, another_finite(all, at)));
-        let who = who.filter(|_| !carry.stranger && !both);
+        let unknown = self.is_of_unknown(&verb, carry);
+        let who = who.filter(|_| !carry.stranger && !both && !unknown);
         let mut frame = self.begun_frame(&verb, who.as_ref(), carry);
         if leads {
             frame.progress = own_progress.unwrap_or(Progress::Real);
@@ -77,10 +86,11 @@ impl Parser<'_> {
         {
             subject.actor = SUBJECT;
         }
+        self.went_on_into(&frame, carry);
         self.where_to(&mut frame, &verb, carry);
         let unnamed = frame.who.is_none()
             && !frame.passive
-            && !carry.stranger
+            && !(carry.stranger || unknown)
             && !matches!(verb.sense, Sense::ContactMade | Sense::LightGreen | Sense::LightRed | Sense::LightYellow);
         let number = self.push(frame, carry);
         if unnamed || leading {
@@ -127,11 +137,13 @@ impl Parser<'_> {
         carry.lead_who =
             self.who_of(Sense::Act(Act::Follow), form, verb.placed(), carry, false, another_finite(all, at));
         carry.began = true;
+        carry.lead_describes =
+            form == Form::Ing && !carry.be && carry.lead_who.is_some() && carry.lead_who != carry.subject;
         carry.has_verb |= form != Form::Ing || carry.be;
     }
 
     /// The frame of a verb, with who does it.
-    fn begun_frame(&mut self, verb: &Spoken<'_>, who: Option<&Mention>, carry: &Carry) -> Frame {
+    fn begun_frame(&mut self, verb: &Spoken<'_>, who: Option<&Mention>, carry: &mut Carry) -> Frame {
         let Spoken { sense, form, .. } = *verb;
         let mut frame = self.frame(who.map(|mention| mention.actor), sense, form, verb.placed(), carry);
         frame.person = who.and_then(|mention| mention.person);
@@ -141,6 +153,7 @@ impl Parser<'_> {
             self.world.own_driver = true;
         }
         frame.described |= form == Form::Ing && !carry.be && who.is_some() && who != carry.subject.as_ref();
+        frame.described |= std::mem::take(&mut carry.lead_describes);
         frame
     }
 
@@ -246,6 +259,16 @@ impl Parser<'_> {
         // "a ball, followed by a dog": without "was" too.
         let followed = sense == Sense::Act(Act::Follow) && matches!(verb.word(self), "followed" | "trailed" | "tailed");
         frame.passive |= followed && form == Form::Past && matches!(verb.next(), Some(Chunk::Preposition("by")));
+        // "was approached from behind by a bus", "while being overtaken".
+        let passed = matches!(verb.word(self), "passed" | "overtaken" | "approached")
+            && matches!(sense, Sense::Approach | Sense::Act(Act::Pass));
+        let at_once = all[at.saturating_sub(2)..at].iter().any(|placed| matches!(placed.chunk, Chunk::Be));
+        if be && form == Form::Past && passed && at_once {
+            frame.passive = true;
+            if !names_doer(all, at) && !ends_in_by(verb, self) {
+                frame.object = frame.who.take();
+            }
+        }
         if be && verb.is_done_to() {
             frame.object = frame.who.take();
             frame.on = frame.with.take();
@@ -259,6 +282,18 @@ impl Parser<'_> {
             frame.who = self.struck_by(sense, verb.word(self));
         }
         leading
+    }
+
+    /// "stopped before rolling forward and striking it": what led to the contact was done.
+    fn went_on_into(&mut self, frame: &Frame, carry: &Carry) {
+        let Some(before) = carry.frame.filter(|_| carry.row && frame.is_contact() && frame.form == Form::Ing) else {
+            return;
+        };
+        let before = &mut self.frames[before];
+        let same = before.who == frame.who && before.joint == Some(Joint::Before) && before.form == Form::Ing;
+        if same && !before.negated {
+            before.progress = Progress::Real;
+        }
     }
 
     /// The side and the place that the words of a verb, or those before it, name.
@@ -312,6 +347,7 @@ impl Parser<'_> {
         let placed = verb.placed();
         let last = self.tokens[placed.end - 1].text.as_str();
         match verb.sense {
+            _ if self.frames[number].passive && ends_in_by(verb, self) => carry.preposition = Some("by"),
             Sense::ContactMade if last == "between" => carry.preposition = Some("between"),
             // "contact by a cyclist was made".
             Sense::ContactMade if last == "by" => {
@@ -337,6 +373,20 @@ impl Parser<'_> {
             _ => {}
         }
     }
+}
+
+/// "a turn lane that opens there": what a road does.
+fn is_of_a_road(all: &[Placed], at: usize, word: &str) -> bool {
+    const ROADS_DO: [&str; 13] =
+        ["run", "ran", "open", "begin", "began", "end", "widen", "split", "curv", "lead", "led", "becom", "became"];
+    let Some([.., lane, that]) = all.get(..at) else { return false };
+    matches!((&lane.chunk, &that.chunk), (Chunk::Lane(_), Chunk::Relative))
+        && ROADS_DO.iter().any(|stem| word.starts_with(stem))
+}
+
+/// "was passed by a bus": "by" is a word of the verb.
+fn ends_in_by(verb: &Spoken<'_>, parser: &Parser<'_>) -> bool {
+    !single(verb.placed()) && parser.tokens[verb.placed().end - 1].text == "by"
 }
 
 /// A finite verb behind a finished relative clause is of the clause around it.

@@ -53,6 +53,14 @@ impl Parser<'_> {
             carry.preposition = Some("between");
             return true;
         }
+        // "A collision involving it and a van occurred on Elm Street".
+        let noun = placed.first.checked_sub(1).map_or("", |before| self.tokens[before].text.as_str());
+        let crash = matches!(noun, "collision" | "crash" | "contact" | "accident");
+        if word == "involving" && crash && carry.frame.is_none() && carry.main.is_none() {
+            self.verb(Sense::ContactMade, Form::Past, all, at, carry);
+            carry.preposition = Some("between");
+            return true;
+        }
         // "the junction where Elm Street merges with Oak Street": nobody of the story does that.
         if word == "where" {
             (carry.subject, carry.frame, carry.has_verb) = (None, None, false);

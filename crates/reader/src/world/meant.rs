@@ -206,6 +206,8 @@ impl World {
                 && sought.fits(known)
                 && known.several == noun.several
                 && !self.is_no_car(sought, known)
+                // "A van rear-ended it. It had stopped behind a van": another one.
+                && !(self.before && known.relations.iter().any(|(place, _)| *place == Relation::Behind))
                 && known.kind.is_none_or(|known| introduces(known, sought.kind))
         });
         Some(announced.map_or(Meant::New, Meant::Known))
@@ -386,8 +388,8 @@ impl World {
                 // "one or both vehicles" is no vehicle that somebody drives.
                 self.latest(|known| known.kind.is_some_and(acts) && !known.several).unwrap_or(SUBJECT)
             }
-            // "The rider came off", told of a motorcycle.
-            Occupant::Rider if noun.article == Article::Definite && !noun.several => self
+            // "The rider came off", told of a motorcycle. "The passenger" rides in a vehicle.
+            Occupant::Rider if plain && noun.article == Article::Definite && !noun.several => self
                 .latest(|known| known.acted)
                 .filter(|&actor| {
                     let kind = self.actors[actor].kind.map(Kind::group);

@@ -116,6 +116,8 @@ pub struct World {
     pub touches: bool,
     /// So many others are told to stand between the noun that is looked up and the subject vehicle.
     pub apart: bool,
+    /// The noun that is looked up stands behind "behind": "stopped behind a van".
+    pub before: bool,
     /// The record says that it crashed with a car.
     with_car: bool,
     /// The noun that is looked up begins its sentence.
@@ -143,6 +145,7 @@ impl World {
             plain: false,
             touches: false,
             apart: false,
+            before: false,
             with_car: own.partner == Some("car"),
             begins: false,
             first: 0,

@@ -1,6 +1,6 @@
 //! The reader on mini narratives of our own: `stories.toml`, a case a behaviour, `families.toml`, each kind of crash in many
 //! wordings, `wordings.toml`, what was misread in many, `newer.toml`, what was misread in a newer edition, `whose.toml`, acts and
-//! places given to the wrong one, and `time.toml`, what is told first and happens later.
+//! places given to the wrong one, `time.toml`, what is told first and happens later, and `grammar.toml`, who does what in retold reports.
 
 use crate::common::{self, account_of, facts};
 use recrash_model::account::{Act, Source};
@@ -30,6 +30,7 @@ fn stories() -> Vec<Story> {
         include_str!("newer.toml"),
         include_str!("whose.toml"),
         include_str!("time.toml"),
+        include_str!("grammar.toml"),
     ];
     files.iter().flat_map(|text| toml::from_str::<File>(text).unwrap().story).collect()
 }
