@@ -159,6 +159,14 @@ impl Chunker<'_> {
                 (Article::Indefinite, 3)
             }
             "one" if self.text(first + 1) == "of" && self.text(first + 2) == "them" => (Article::Indefinite, 2),
+            // "the second of two vans".
+            "the"
+                if matches!(self.text(first + 1), "first" | "second" | "third" | "last")
+                    && self.text(first + 2) == "of"
+                    && matches!(self.text(first + 3), "two" | "three" | "four" | "several") =>
+            {
+                (Article::Indefinite, 3)
+            }
             // "a group of four cyclists".
             "a" | "the" if self.is_group(first) => {
                 (if self.text(first) == "a" { Article::Indefinite } else { Article::Definite }, 3)
@@ -597,7 +605,7 @@ impl Chunker<'_> {
         let tells = |at: usize| {
             let word = self.text(at);
             let another = matches!(word, "another" | "second" | "third" | "different" | "other" | "parked" | "stopped");
-            !another && (self.adjective(at) || matches!(word, "flat" | "bed" | "flatbed" | "box" | "utility"))
+            !another && (self.adjective(at) || matches!(word, "flat" | "bed" | "flatbed" | "box" | "utility" | "its"))
         };
         let trailer = (draft.at + 1..=draft.at + 1 + TRAILER_NAME).find(|at| own(*at));
         let named = trailer.filter(|trailer| (draft.at + 1..*trailer).all(tells));
@@ -630,7 +638,9 @@ impl Chunker<'_> {
                 }
                 noun.kind = Some(kind);
                 draft.plural = matches!(last, "people" | "personnel" | "traffic")
-                    || last.ends_with('s') && !matches!(last, "bus" | "debris" | "cross");
+                    || last.ends_with('s')
+                        && !matches!(last, "bus" | "debris" | "cross")
+                        && !self.lexicon.is_model(last);
             }
         }
     }

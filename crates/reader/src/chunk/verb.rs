@@ -267,6 +267,16 @@ impl Candidate<'_> {
     /// "at a railroad crossing", "a pedestrian crossing sign". "For a deer crossing the road" is one.
     fn is_a_crossing(&self) -> bool {
         let named = matches!(self.word_before, "railroad" | "railway" | "pedestrian" | "school" | "deer" | "cattle");
+        // "At the Oak Street crossing it stopped".
+        let street =
+            matches!(self.word_before, "street" | "avenue" | "road" | "st" | "ave" | "rd" | "boulevard" | "[xxx]");
+        if self.word(0) == "crossing"
+            && street
+            && self.is_single()
+            && matches!(self.word(1), "it" | "they" | "," | "." | "")
+        {
+            return true;
+        }
         self.word(0) == "crossing"
             && named
             && (matches!(self.word(1), "sign" | "signal" | "light" | "guard")

@@ -201,7 +201,7 @@ impl Parser<'_> {
             self.tokens[placed.first..placed.end].iter().any(|token| matches!(token.text.as_str(), "its" | "'s"));
         // "From an alley on the left a van came".
         let indefinite = matches!(next, Some(Chunk::Noun(noun)) if noun.article == crate::chunk::Article::Indefinite);
-        let side = matches!(self.tokens[placed.end - 1].text.as_str(), "left" | "right" | "ahead");
+        let side = matches!(self.tokens[placed.end - 1].text.as_str(), "left" | "right" | "ahead" | "rear");
         let begins = indefinite && side && carry.frame.is_none() && carry.subject.is_none();
         let governs = governs && !possessed && !begins;
         // "hit the van behind the front wheel": where on the van.
@@ -354,7 +354,9 @@ impl Parser<'_> {
             carry.preposition = None;
             return;
         }
-        let from = carry.preposition == Some("from");
+        // "turned left off northbound Elm Street".
+        let turns = carry.frame.is_some_and(|frame| self.frames[frame].act() == Some(Act::Turn));
+        let from = carry.preposition == Some("from") || turns && carry.preposition == Some("off");
         // "arrived from the west" goes east.
         let bare = matches!(self.tokens[placed.first].text.as_str(), "north" | "south" | "east" | "west");
         let compass = if from && bare { compass.turned(4) } else { compass };
@@ -368,6 +370,10 @@ impl Parser<'_> {
         let (governed, there) = (carry.preposition.is_some(), matches!(carry.preposition, Some("at" | "near")));
         carry.preposition = None;
         // Behind a noun that is an object: "a truck facing east" has its own frame; "yield to a van northbound on ..." is rare.
+        if let Some(turn) = carry.frame.and_then(|frame| self.turned_to_go(frame)) {
+            (self.frames[turn].heading, self.frames[turn].onto) = (Some(stands), true);
+            return;
+        }
         match carry.frame {
             Some(frame) => {
                 let taken = &mut self.frames[frame];
@@ -389,7 +395,9 @@ impl Parser<'_> {
             }
             None => match &carry.subject {
                 Some(subject) => {
-                    self.world.actors[subject.actor].heading.get_or_insert(stands);
+                    for who in [Some(subject), carry.also.as_ref()].into_iter().flatten() {
+                        self.world.actors[who.actor].heading.get_or_insert(stands);
+                    }
                 }
                 // "With it northbound in the bus lane": who stands behind "with".
                 None if carry
@@ -406,6 +414,17 @@ impl Parser<'_> {
                 None => {}
             },
         }
+    }
+
+    /// "turned left to go west", "a right turn so as to continue east": the turn whose way this is.
+    fn turned_to_go(&self, frame: usize) -> Option<usize> {
+        let turn = frame.checked_sub(1)?;
+        let (before, goes) = (&self.frames[turn], &self.frames[frame]);
+        let turns = matches!(before.act(), Some(Act::Turn)) && before.heading.is_none();
+        let verb = self.tokens[goes.first].text.as_str();
+        let on = goes.form == Form::Base && matches!(verb, "go" | "continue" | "head" | "proceed" | "travel" | "drive");
+        let one = before.who == goes.who && before.sentence == goes.sentence;
+        (turns && on && one && goes.act() == Some(Act::Follow)).then_some(turn)
     }
 
     /// "It slowed for cars in the eastbound lane": whom the lane is told of, where the direction of who slowed is known.
@@ -474,6 +493,12 @@ impl Parser<'_> {
         let preposition = carry.preposition.take();
         carry.to = false;
         if self.is_lane_of_others(placed.first) || self.is_astride(placed) {
+            return;
+        }
+        // "passed it in order to reach the left turn lane": not there yet.
+        let aims = carry.frame.map(|frame| &self.frames[frame]);
+        if preposition.is_none() && aims.is_some_and(|frame| frame.sense == Sense::Approach && frame.form == Form::Base)
+        {
             return;
         }
         let stands = (lane, placed.first, placed.end);

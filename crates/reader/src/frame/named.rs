@@ -3,7 +3,7 @@
 use super::parser::{Carry, Mention, Parser};
 use super::row::{another_finite, goes_on_behind_comma, relation_behind, transitive};
 use crate::chunk::{Article, Chunk, Joint, Noun, Piece, Placed};
-use crate::lexicon::{Adjective, Relation, Sense};
+use crate::lexicon::{Adjective, Form, Relation, Sense};
 use crate::token::number;
 use crate::world::{Actor, SUBJECT};
 use recrash_model::account::{Act, Kind, KindGroup};
@@ -25,6 +25,13 @@ impl Parser<'_> {
             return false;
         }
         if self.is_what_it_is(noun, all, at, carry) {
+            // "was the third car in line at a light": it stood there.
+            if self.is_in_line(noun, placed.end) && carry.be {
+                let mut stands = self.frame(Some(SUBJECT), Sense::Act(Act::Hold), Form::Past, placed, carry);
+                stands.state = true;
+                self.frames.push(stands);
+                carry.frame = Some(self.frames.len() - 1);
+            }
             return true;
         }
         let hint = relation_behind(all, at);
@@ -117,19 +124,23 @@ impl Parser<'_> {
 
     /// "The AV was the lead vehicle stopped at a light", "waited as the first car in line": what it is, and nobody else.
     fn is_what_it_is(&self, noun: &Noun, all: &[Placed], at: usize, carry: &Carry) -> bool {
-        let in_line = noun.ordinal.is_some() && {
-            let word = |ahead: usize| self.tokens.get(all[at].end + ahead).map_or("", |token| token.text.as_str());
-            word(0) == "in" && matches!(word(1), "line" | "queue" | "the")
-        };
         let one_of = noun.one_of && noun.kind.is_some_and(Kind::is_vehicle) && carry.be;
         let first = one_of
-            || in_line
+            || self.is_in_line(noun, all[at].end)
             || noun.adjectives.iter().any(|adjective| matches!(adjective, Adjective::Lead | Adjective::First));
         let vehicle = noun.kind.is_some_and(Kind::is_vehicle) && noun.occupant.is_none() && !noun.several;
         let of_subject =
             carry.subject.as_ref().is_some_and(|subject| subject.actor == SUBJECT && subject.piece.is_none());
         let as_one = at > 0 && self.tokens[all[at - 1].first].text == "as" && !another_finite(all, at);
         first && vehicle && of_subject && (carry.be || as_one)
+    }
+
+    /// "the third car in line".
+    fn is_in_line(&self, noun: &Noun, end: usize) -> bool {
+        let word = |at: usize| self.tokens.get(at).map_or("", |token| token.text.as_str());
+        let line = matches!(word(end + 1), "line" | "queue")
+            || word(end + 1) == "the" && matches!(word(end + 2), "line" | "queue");
+        noun.ordinal.is_some() && word(end) == "in" && line
     }
 
     /// "its toolbox scratched the door": whose it is does so.
@@ -249,6 +260,7 @@ impl Parser<'_> {
         let struck = self.waits_struck(all, at, carry).or_else(|| self.closes(all, at));
         let actor = struck.unwrap_or_else(|| self.not_itself(self.its(&self.tokens[all[at].first].text, carry), carry));
         let actor = self.not_who_stands(actor, all, at, carry);
+        let actor = if self.stops_because(all, at, carry) { SUBJECT } else { actor };
         let actor = self.latter(all[at].first).unwrap_or(actor);
         let both = self.both(all, at).filter(|_| carry.main.is_none());
         let mention = Mention { actor: both.unwrap_or(actor), piece: None, person: None, end: all[at].end };
@@ -257,6 +269,20 @@ impl Parser<'_> {
             carry.also = carry.subject.clone().map(|subject| Mention { actor: SUBJECT, ..subject });
         }
         false
+    }
+
+    /// "Because a truck blocked the lane, it stopped": whom the story is about.
+    fn stops_because(&self, all: &[Placed], at: usize, carry: &Carry) -> bool {
+        let because = carry.joint == Some(Joint::Because) && carry.after_comma && carry.has_verb && carry.clause == 1;
+        let verb = all[at + 1..]
+            .iter()
+            .find(|placed| !matches!(placed.chunk, Chunk::Word | Chunk::Be))
+            .map(|placed| &placed.chunk);
+        let gives_way = matches!(
+            verb,
+            Some(Chunk::Verb(Sense::Act(Act::Stop | Act::Hold | Act::Slow) | Sense::Yield | Sense::TakeOver, _))
+        );
+        because && gives_way && self.world.topic == SUBJECT && self.tokens[all[at].first].text == "it"
     }
 
     /// "the latter": who was named last; "the former": who was before that.
@@ -353,7 +379,7 @@ impl Parser<'_> {
         let vehicle = |last: &Mention| self.world.actors[last.actor].kind.is_some_and(Kind::is_vehicle);
         carry.preposition == Some("with")
             && self.world.actors[mention.actor].kind == Some(Kind::Trailer)
-            && !carry.governed
+            && (!carry.governed || carry.last.as_ref().is_some_and(|last| self.tokens[last.end].text == "with"))
             && carry.last.as_ref().is_some_and(|last| last.piece.is_none() && vehicle(last))
     }
 
@@ -409,7 +435,7 @@ impl Parser<'_> {
         if let Some((heading, _)) = heading.filter(|(_, street)| drives && (actor == SUBJECT || !street)) {
             known.heading.get_or_insert(heading);
         }
-        if let Some(lane) = lane.filter(|_| drives) {
+        if let Some(lane) = lane.filter(|_| drives && !(carry.place && actor == SUBJECT)) {
             known.lane.get_or_insert(lane);
         }
     }
@@ -441,9 +467,12 @@ impl Parser<'_> {
         }
         self.led_by(actor, carry);
         let inverts = std::mem::take(&mut carry.inverts);
+        // "a van that it was following reversed": a clause within the other one.
+        let inner = carry.relative && carry.fresh && carry.outer.is_some();
+        carry.gap = carry.subject.as_ref().filter(|_| inner).map(|subject| subject.actor);
         carry.subject = Some(mention.clone());
         carry.last = Some(mention);
-        (carry.has_verb, carry.relative, carry.governed, carry.fresh) = (inverts, false, false, false);
+        (carry.has_verb, carry.relative, carry.governed, carry.fresh) = (inverts, inner, false, false);
         (carry.be, carry.to, carry.progress) = (false, false, None);
         carry.negated = std::mem::take(&mut carry.nobody);
         (carry.frame, carry.stranger) = (None, false);

@@ -5,7 +5,8 @@ use super::parser::{Carry, Mention, Parser};
 use super::row::transitive;
 use super::zone_of;
 use crate::chunk::{Chunk, Piece, Placed};
-use crate::lexicon::{Form, Progress, Relation, Sense};
+use crate::lexicon::{Form, Meaning, Progress, Relation, Sense};
+use crate::token::TokenKind;
 use crate::world::{Actor, SUBJECT};
 use recrash_model::account::{Act, Kind, KindGroup, LeftRight};
 
@@ -31,7 +32,9 @@ impl Parser<'_> {
                 self.touch(frame, self.frames[frame].who, mention, placed, carry);
             }
             "for" if self.waits_for(frame, mention.actor) => {
-                self.note(mention.actor, Relation::Ahead);
+                if !self.comes_across(mention.actor, placed.end) {
+                    self.note(mention.actor, Relation::Ahead);
+                }
                 self.frames[frame].object.get_or_insert(mention.actor);
             }
             "toward" | "towards" => self.comes_toward(frame, mention),
@@ -213,6 +216,24 @@ impl Parser<'_> {
             && !known.several
     }
 
+    /// "stopped for an oncoming van", "for a van coming the other way", "halted, heading south, for a northbound van": not ahead in its lane.
+    fn comes_across(&self, actor: Actor, end: usize) -> bool {
+        let known = &self.world.actors[actor];
+        let opposite = known.relations.iter().any(|(place, _)| *place == Relation::Opposite);
+        let other_way = match (known.heading, self.world.actors[SUBJECT].heading) {
+            (Some((theirs, ..)), Some((own, ..))) => theirs != own,
+            _ => false,
+        };
+        let clause = self.tokens[end..].iter().take(OTHER_WAY_WITHIN).take_while(|token| token.kind != TokenKind::Mark);
+        let behind = (end..end + clause.count()).any(|at| {
+            let found = self
+                .lexicon
+                .longest(self.tokens, at, |meaning| matches!(meaning, Meaning::Relation(Relation::Opposite)));
+            found.is_some() || matches!(self.tokens[at].text.as_str(), "toward" | "towards")
+        });
+        opposite || other_way || behind
+    }
+
     /// "a truck coming towards it".
     fn comes_toward(&mut self, frame: usize, mention: &Mention) {
         let taken = &self.frames[frame];
@@ -265,6 +286,9 @@ impl Parser<'_> {
         moves && apart && rides && named && mention.person.is_none() && frame.happened() && frame.object.is_none()
     }
 }
+
+/// "for a van that was coming the other way": so near stands which way it came. [tokens]
+const OTHER_WAY_WITHIN: usize = 6;
 
 /// Whether what stands before this word is named for itself, and not "the van's lane", "the AVs path".
 fn not_possessive(token: &crate::token::Token) -> bool {

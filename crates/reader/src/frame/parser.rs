@@ -61,6 +61,8 @@ pub(super) struct Carry {
     pub(super) after_comma: bool,
     /// Who began, tried or wished what the next verb tells.
     pub(super) lead_who: Option<Mention>,
+    /// Whom the relative clause is about, where it has a subject of its own: "a van that it was following".
+    pub(super) gap: Option<Actor>,
     /// What the next verb tells is told of a noun in passing: "struck by a van attempting to pass".
     pub(super) lead_describes: bool,
     /// Number of the clause.

@@ -424,6 +424,12 @@ pub(super) fn relation_behind(all: &[Placed], at: usize) -> Option<Relation> {
     ) {
         return Some(*relation);
     }
+    // "the vehicle traveling next to it".
+    if let (true, Some(Chunk::Relation(relation)), Some(Chunk::Pronoun)) =
+        (further > at + 1, all.get(further).map(|p| &p.chunk), all.get(further + 1).map(|p| &p.chunk))
+    {
+        return Some(*relation);
+    }
     // "the vehicle that was following it", "the vehicle trailing it".
     if let (Chunk::Verb(Sense::Act(Act::Follow), Form::Ing), Some(Chunk::Pronoun)) =
         (&all[further - 1].chunk, all.get(further).map(|p| &p.chunk))

@@ -102,7 +102,7 @@ impl Parser<'_> {
                 && self.frames.iter().any(|before| {
                     before.sentence < waiting.sentence
                         && before.who == Some(self.world.topic)
-                        && before.happened()
+                        && !before.negated
                         && before.act() == waiting.act()
                         && !matches!(before.act(), Some(Act::Follow))
                 });

@@ -5,6 +5,7 @@ use super::adverbs::goes_about;
 use super::parser::{Carry, Mention, Parser};
 use super::row::{
     Spoken, another_finite, goes_on_behind_comma, looks_somewhere, names_doer, next_is_verb, next_preposition, single,
+    transitive,
 };
 use super::sided;
 use crate::chunk::{Chunk, Joint, Placed};
@@ -85,6 +86,16 @@ impl Parser<'_> {
             && let Some(subject) = &mut carry.subject
         {
             subject.actor = SUBJECT;
+        }
+        if let Some(gap) =
+            carry.gap.take().filter(|gap| transitive(verb.sense) && frame.object.is_none() && frame.who != Some(*gap))
+        {
+            let named =
+                matches!(verb.next(), Some(Chunk::Noun(_) | Chunk::Pronoun | Chunk::Piece(_) | Chunk::Preposition(_)));
+            frame.object = (!named).then_some(gap);
+            if let (false, Sense::Act(Act::Follow)) = (named, verb.sense) {
+                self.follows(frame.who, gap);
+            }
         }
         self.went_on_into(&frame, carry);
         self.where_to(&mut frame, &verb, carry);

@@ -63,6 +63,11 @@ impl Parser<'_> {
         }
         // "the junction where Elm Street merges with Oak Street": nobody of the story does that.
         if word == "where" {
+            // "moved into the left lane, where a van was driving": in that lane.
+            let back = at - usize::from(at > 0 && matches!(all[at - 1].chunk, Chunk::Comma));
+            if let Some(Placed { chunk: Chunk::Lane(lane), first, end }) = back.checked_sub(1).map(|lane| &all[lane]) {
+                carry.lead_lane = Some((*lane, *first, *end));
+            }
             (carry.subject, carry.frame, carry.has_verb) = (None, None, false);
             (carry.place, carry.fresh) = (true, true);
         }
@@ -80,6 +85,13 @@ impl Parser<'_> {
         if word.ends_with("ing") && beside_noun && matches!(next, Some(Chunk::Noun(_))) {
             carry.preposition = Some("of");
             return true;
+        }
+        // "whose driver was texting ran into it": a verb that nobody knows is behind "was".
+        let done = (word.ends_with("ing") || word.ends_with("ed"))
+            && carry.be
+            && matches!(next, Some(Chunk::Verb(_, Form::Past)));
+        if done && at > 0 && matches!(all[at - 1].chunk, Chunk::Be) {
+            (carry.be, carry.governed) = (false, false);
         }
         let waits = carry.preposition.is_some() || carry.relation.is_some();
         // "at about 6 mph its bumper touched", "at this time", "on Elm Street".

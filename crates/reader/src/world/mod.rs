@@ -216,6 +216,11 @@ impl World {
     pub fn describe(&mut self, actor: Actor, noun: &Noun, tokens: (usize, usize)) {
         if actor != SUBJECT {
             refine(&mut self.actors[actor], noun, tokens);
+            // "an object, apparently a chair".
+            let known = &mut self.actors[actor];
+            if known.kind == Some(Kind::Object) && noun.kind.is_some_and(|kind| kind.group() == KindGroup::Object) {
+                (known.kind, known.kind_tokens) = (noun.kind, Some(tokens));
+            }
         } else if self.actors[SUBJECT].kind.is_none() {
             self.actors[SUBJECT].kind = noun.kind;
         }
