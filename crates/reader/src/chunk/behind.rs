@@ -11,6 +11,9 @@ impl Chunker<'_> {
     pub(super) fn finish(&self, mut noun: Noun, first: usize, at: usize) -> Option<(Noun, usize)> {
         let at = self.alias_behind(&mut noun, at);
         self.kind_in_brackets(&mut noun, at);
+        if let Some((truck, behind)) = self.drawn_by(&noun, at) {
+            return Some((truck, behind - first));
+        }
         let at = self.vehicle_behind(&mut noun, at);
         // "a person in the driver's seat of the van" is somebody in the van.
         if noun.kind == Some(Kind::Pedestrian)
@@ -38,6 +41,20 @@ impl Chunker<'_> {
             return Some((person, at + 1 + length - first));
         }
         Some((noun, at - first))
+    }
+
+    /// "the trailer of a truck": the truck.
+    fn drawn_by(&self, noun: &Noun, at: usize) -> Option<(Noun, usize)> {
+        if noun.kind != Some(Kind::Trailer) || noun.several || self.text(at) != "of" {
+            return None;
+        }
+        let (truck, length) = self.noun(at + 1)?;
+        let kind = match truck.kind? {
+            kind if kind.group() == KindGroup::Truck => Kind::SemiTrailerTruck,
+            Kind::Pickup => Kind::PickupWithTrailer,
+            _ => return None,
+        };
+        Some((Noun { kind: Some(kind), ..truck }, at + 1 + length))
     }
 
     /// "the car (Vehicle 2)", "the motorcycle (Vehicle 2) operator".

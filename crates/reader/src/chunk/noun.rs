@@ -607,12 +607,24 @@ impl Chunker<'_> {
             let another = matches!(word, "another" | "second" | "third" | "different" | "other" | "parked" | "stopped");
             !another && (self.adjective(at) || matches!(word, "flat" | "bed" | "flatbed" | "box" | "utility" | "its"))
         };
-        let trailer = (draft.at + 1..=draft.at + 1 + TRAILER_NAME).find(|at| own(*at));
-        let named = trailer.filter(|trailer| (draft.at + 1..*trailer).all(tells));
-        match named.filter(|_| self.text(draft.at) == "and" && !draft.plural && draft.noun.occupant.is_none()) {
+        // "a truck and its trailer", "a pickup with a trailer in tow".
+        let joined = match (self.text(draft.at), self.text(draft.at + 1)) {
+            ("and" | "with", "its") | ("with", "a" | "an") => 2,
+            ("and", _) => 1,
+            _ => return draft.at,
+        };
+        let from = draft.at + joined;
+        let trailer = (from..=from + TRAILER_NAME).find(|at| own(*at));
+        let named = trailer.filter(|trailer| (from..*trailer).all(tells));
+        match named.filter(|_| !draft.plural && draft.noun.occupant.is_none()) {
             Some(trailer) => {
                 draft.noun.kind = Some(kind);
-                trailer + 1
+                let towed = match (self.text(trailer + 1), self.text(trailer + 2)) {
+                    ("in", "tow") => 2,
+                    ("attached" | "hitched", next) if next != "to" => 1,
+                    _ => 0,
+                };
+                trailer + 1 + towed
             }
             None => draft.at,
         }

@@ -62,6 +62,16 @@ impl Chunker<'_> {
                 Some((piece, end)) => return Some((piece, end - first)),
                 None => self.of_whom(draft)?,
             },
+            // "a sensor at its front right".
+            "at" | "on"
+                if draft.piece.parts == [Part::Noun]
+                    && matches!(self.text(draft.at + 1), "its" | "their")
+                    && self.part(draft.at + 2).is_some_and(|(part, _)| part != Part::Noun) =>
+            {
+                draft.piece.its = true;
+                self.further_parts(draft.at + 2, &mut draft);
+                draft
+            }
             "on" if draft.nouns > 0 => {
                 self.on_the_side(&mut draft);
                 if matches!(self.text(draft.at), "of" | "on") { self.of_whom(draft)? } else { draft }
@@ -126,7 +136,8 @@ impl Chunker<'_> {
     fn on_the_side(&self, draft: &mut Draft) {
         let ends = draft.piece.parts.iter().any(|part| matches!(part, Part::Front | Part::Rear));
         let sided = draft.piece.parts.iter().any(|part| matches!(part, Part::Left | Part::Right));
-        if !ends || sided || !matches!(self.text(draft.at + 1), "the" | "its" | "our") {
+        let end = ends || draft.piece.mirror;
+        if !end || sided || !matches!(self.text(draft.at + 1), "the" | "its" | "our") {
             return;
         }
         if let Some((part @ (Part::Left | Part::Right), length)) = self.part(draft.at + 2) {
@@ -183,11 +194,15 @@ impl Chunker<'_> {
             _ => None,
         })?;
         let (owner, length) = self.noun(at + 2).filter(|(noun, _)| noun.subject || noun.kind.is_some_and(can_own))?;
-        let unsided = |part: &Part| !matches!(part, Part::Left | Part::Right);
-        let parts = named.parts.iter().copied().filter(unsided).collect();
-        let piece = Piece { parts, open: false, owner: Some(owner), its: false, ..named.clone() };
+        let piece = Piece { open: false, owner: Some(owner), its: false, ..named.clone() };
         let mut draft = Draft { piece, at: at + 2 + length, nouns: 1 };
-        self.side_told_behind(&mut draft);
+        // "likewise on the left side".
+        let mut unsided = Draft { piece: draft.piece.clone(), ..draft };
+        unsided.piece.parts.retain(|part| !matches!(part, Part::Left | Part::Right));
+        self.side_told_behind(&mut unsided);
+        if unsided.at > draft.at {
+            draft = unsided;
+        }
         Some((draft.piece, draft.at - at))
     }
 
@@ -235,24 +250,20 @@ impl Chunker<'_> {
         {
             draft.piece.its = true;
             self.further_parts(own, &mut draft);
-        } else if self.text(behind) == "the" && self.is_end(&draft) && self.side_at(behind + 1).is_some() {
-            // "the rear of the left side of the van".
-            self.further_parts(behind + 1, &mut draft);
-            if self.text(draft.at) == "of" {
-                return self.of_whom(draft);
-            }
+        } else if let ("of", "the", Some((inner, length))) =
+            (self.text(draft.at), self.text(behind), self.piece(behind))
+            && inner.owner.is_some() | inner.its | self.side_at(behind + 1).is_some()
+        {
+            // "the rear of the left side", "the left half of the rear bumper of the van".
+            inner.parts.iter().for_each(|part| draft.add(*part));
+            draft.piece = Piece { owner: inner.owner, its: inner.its, parts: draft.piece.parts, ..draft.piece };
+            draft.at = behind + length;
         } else if self.text(behind) == "it" {
             (draft.piece.its, draft.at) = (true, behind + 1);
         } else if self.text(draft.at) == "of" {
             return None;
         }
         Some(draft)
-    }
-
-    /// Whether it is an end of a vehicle, of which no side is told.
-    fn is_end(&self, draft: &Draft) -> bool {
-        draft.piece.parts.iter().any(|part| matches!(part, Part::Front | Part::Rear))
-            && !draft.piece.parts.iter().any(|part| matches!(part, Part::Left | Part::Right))
     }
 
     /// A side of a vehicle that is named here: "left side", "driver side".
@@ -296,7 +307,7 @@ impl Chunker<'_> {
     }
 
     fn ends_clause(&self, at: usize) -> bool {
-        at >= self.tokens.len() || matches!(self.text(at), "," | "." | "and" | "by" | "when" | "while" | "as")
+        at >= self.tokens.len() || matches!(self.text(at), "," | "." | "and" | "by" | "when" | "while" | "as" | "with")
     }
 
     pub(super) fn part(&self, at: usize) -> Option<(Part, usize)> {

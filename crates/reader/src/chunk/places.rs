@@ -10,6 +10,9 @@ const LONGEST_LANE_NAME: usize = 9;
 /// "partially in one lane and partially in another one": both stand so near. [tokens]
 const BOTH_WITHIN: usize = 12;
 
+/// "had three lanes. It was in the middle one": so many words before it. [tokens]
+const LANES_BEFORE: usize = 24;
+
 const LEFT: &[&str] = &["left", "leftmost", "inside", "fast", "inner", "innermost"];
 const RIGHT: &[&str] = &["right", "rightmost", "outside", "slow", "outer", "outermost"];
 const BUS: &[&str] = &["bus", "transit"];
@@ -106,8 +109,7 @@ impl Chunker<'_> {
         if let (Some(_), "to", Some(end)) = (bare(word), self.text(at + 1), bare(self.text(at + 2))) {
             return Some((end, 3));
         }
-        let stem =
-            word.strip_suffix("bound").or_else(|| word.strip_suffix("bounds")).or_else(|| word.strip_suffix("erly"));
+        let stem = ["bound", "bounds", "erly", "ward", "wards"].into_iter().find_map(|end| word.strip_suffix(end));
         if let Some(compass) = stem.filter(|stem| !stem.is_empty()).and_then(bare) {
             return Some((compass, 1));
         }
@@ -229,6 +231,7 @@ impl Chunker<'_> {
         let place = first >= 2 && self.text(first - 1) == "the" && self.text(first - 2) == "to";
         match self.text(at) {
             "the" | "its" | "these" | "those" => !place && self.text(at - 1) == "of" && count(at + 1),
+            "several" | "multiple" | "five" | "six" => !place && self.text(at - 1) == "of",
             "one" => self.text(at + 1) == "of",
             _ => false,
         }
@@ -239,8 +242,8 @@ impl Chunker<'_> {
         let word = self.text(at);
         let named = at >= 2
             && matches!(self.text(at - 1), "the" | "its")
-            && matches!(self.text(at - 2), "in" | "within" | "using")
-            && (self.first..at).any(|at| self.text(at) == "lanes");
+            && matches!(self.text(at - 2), "in" | "within" | "using" | "into" | "to")
+            && (at.saturating_sub(LANES_BEFORE)..at).any(|at| self.text(at) == "lanes");
         // "in the one farthest right".
         if let (true, "one", Some((lane, length))) = (named, word, self.told_behind_lane(at)) {
             return Some((lane, 1 + length));
@@ -284,13 +287,21 @@ impl Chunker<'_> {
             "on" | "at" if self.text(behind + 1) == "the" && self.text(behind + 2) == "far" => {
                 Some((side_at(behind + 3)?, 4))
             }
-            "second" | "2nd" if self.text(behind + 1) == "from" => {
+            "second" | "third" | "2nd" | "3rd" if self.text(behind + 1) == "from" => {
                 let side = the(behind + 2);
                 side_at(side).map(|_| (LaneWord::Center, side + 1 - behind))
             }
             "for" | "reserved" | "designated" | "dedicated" | "meant" | "marked" | "intended" => self.lane_for(behind),
             _ => {
                 let at = behind + usize::from(self.text(behind) == "number");
+                // "lane number 2, the leftmost".
+                let named: Vec<&str> = (at + 1..at + 4).map(|at| self.text(at)).collect();
+                if let (Some(_), [",", "the", side @ ("leftmost" | "rightmost")]) =
+                    (count(self.text(at)), named.as_slice())
+                {
+                    let lane = if *side == "leftmost" { LaneWord::Left } else { LaneWord::Right };
+                    return Some((lane, at + 4 - behind));
+                }
                 let many = if self.text(at + 1) == "of" { count(self.text(at + 2)) } else { None };
                 let lane = of_so_many(count(self.text(at))?, Some(many?))?;
                 Some((lane, at + 3 - behind))

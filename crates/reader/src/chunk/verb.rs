@@ -355,6 +355,8 @@ impl Chunker<'_> {
         }
         // "coming from the left": where it comes from stands behind.
         let side = verb.behind(0) == "the" && matches!(verb.behind(1), "left" | "right" | "opposite" | "rear");
+        // "came from the AV's right".
+        let side = side || self.side_of_its_owner(at + found.length - 1).is_some();
         let from = sense == Sense::Approach && found.length > 1 && verb.last_word() == "from" && side;
         // "turning right onto the left lane" is a right turn.
         let said = match verb.word(1) {

@@ -9,7 +9,7 @@ use super::standing::{reasons, state};
 use super::state::{partner_state, sv_speed, sv_state};
 use super::touched::{by_trailer, zones};
 use crate::frame::Frame;
-use crate::lexicon::Sense;
+use crate::lexicon::{Relation, Sense};
 use crate::world::{Actor, SUBJECT};
 use recrash_model::account::{
     Account, Act, Compass, ContactState, Fact, Kind, KindGroup, LaneWord, LeftRight, Origin, Party, Speed,
@@ -49,6 +49,7 @@ pub(crate) fn party(reading: &Reading<'_>, actor: Actor) -> Party {
             .lane
             .filter(|(_, first, _)| before(*first))
             .or_else(|| turn_lane_to_come(reading, actor))
+            .or_else(|| in_the_same_lane(reading, actor))
             .map(|(lane, first, end)| reading.told(lane, first, end)),
         speeds: speeds(reading, actor),
         zones: zones(reading, actor),
@@ -58,6 +59,23 @@ pub(crate) fn party(reading: &Reading<'_>, actor: Actor) -> Party {
         party.reasons = reasons(reading, actor);
     }
     party
+}
+
+/// "was waiting in the center lane. A van coming up in the same lane": in that of the subject vehicle.
+fn in_the_same_lane(reading: &Reading<'_>, actor: Actor) -> Option<(LaneWord, usize, usize)> {
+    let (subject, known) = (&reading.story.world.actors[SUBJECT], &reading.story.world.actors[actor]);
+    let (own, ..) = subject.lane.filter(|_| actor != SUBJECT)?;
+    if subject.heading.zip(known.heading).is_some_and(|(one, other)| one.0 != other.0) {
+        return None;
+    }
+    let changes = reading.did(SUBJECT, Act::LaneChange) || reading.did(actor, Act::LaneChange);
+    let (number, _) = reading.before(actor).find(|(_, frame)| {
+        frame.relations.iter().any(|(relation, to)| *relation == Relation::Same && to.is_none_or(|to| to == SUBJECT))
+    })?;
+    let (first, end) = reading.window(number);
+    let words = &reading.story.tokens[first..end];
+    let at = words.windows(2).position(|pair| pair[0].text == "same" && pair[1].text == "lane")?;
+    (!changes).then_some((own, first + at, first + at + 2))
 }
 
 /// "passed the AV on the left to enter the left turn lane": the lane in which it is to be.

@@ -198,8 +198,9 @@ impl Case<'_> {
         if self.group != Some(KindGroup::Object) {
             return None;
         }
-        let flies =
-            matches!(told(&self.partner.kind), Some(Kind::TreeBranch | Kind::LooseWheel | Kind::Cargo)) && !self.lay();
+        let flies = matches!(told(&self.partner.kind), Some(Kind::TreeBranch | Kind::LooseWheel | Kind::Cargo))
+            && !self.lay()
+            && !self.is_plant();
         Some(if flies || comes(self.reading, self.partner) {
             (Role::Responder, "something came into its way")
         } else {
@@ -210,6 +211,18 @@ impl Case<'_> {
     fn lying_animal(&self) -> Said {
         let lying = self.group == Some(KindGroup::Animal) && self.lay();
         lying.then_some((Role::Initiator, "it moved into an animal that lay there"))
+    }
+
+    /// "a bush", "some hedges": what stands where it grows, unless it is told to fall.
+    fn is_plant(&self) -> bool {
+        const PLANTS: [&str; 9] =
+            ["bush", "bushes", "hedge", "hedges", "shrub", "shrubs", "shrubbery", "vegetation", "foliage"];
+        let story = &self.reading.story;
+        let named = self.reading.contacts.partner.and_then(|partner| story.world.actors[partner].kind_tokens);
+        let plant = named.is_some_and(|(first, end)| {
+            story.tokens[first..end].iter().any(|token| PLANTS.contains(&token.text.as_str()))
+        });
+        plant && !self.partner.did(Act::Fall)
     }
 
     /// Whether the sentence of the contact says that it lay there, or grew.

@@ -7,6 +7,9 @@ use crate::lexicon::{Form, Part, Relation, Sense};
 use crate::world::{Actor, SUBJECT};
 use recrash_model::account::{Act, Compass, Kind, KindGroup, LaneWord, LeftRight};
 
+/// "on its left side, at the rear bumper": so near stands the end of a side that was touched. [tokens]
+const END_WITHIN: usize = 3;
+
 impl Parser<'_> {
     /// A part whose owner is not said: "made contact with the rear bumper".
     pub(super) fn loose_piece(&mut self, piece: &Piece, placed: &Placed, carry: &mut Carry) {
@@ -18,6 +21,15 @@ impl Parser<'_> {
         if touches && self.frames[frame].on.is_none() {
             self.frames[frame].on = Some(piece.clone());
             self.frames[frame].end = placed.end;
+        }
+        // "was hit on its left side, at the rear bumper": where on that side.
+        let near = touches && placed.first <= self.frames[frame].end + END_WITHIN;
+        let end: Vec<Part> =
+            piece.parts.iter().copied().filter(|part| matches!(part, Part::Front | Part::Rear)).collect();
+        if let Some(on) = self.frames[frame].on.as_mut().filter(|on| near && on.parts.len() == 1 && on.side().is_some())
+            && piece.side().is_none()
+        {
+            on.parts.extend(end);
         }
         (carry.preposition, carry.relation) = (None, None);
     }
@@ -229,7 +241,14 @@ impl Parser<'_> {
             _ => None,
         };
         // "pulled out of a driveway on the right", "merged from a ramp on the right": a place, and no side.
-        let located = matches!(self.tokens[placed.first].text.as_str(), "on" | "from" | "in");
+        // "pulled into the lane on its left": over to that side.
+        let of_lane = carry.frame.is_some_and(|frame| {
+            let over = matches!(self.frames[frame].act(), Some(Act::LaneChange | Act::Drift));
+            over && self.tokens[placed.first].text == "on"
+                && self.frames[frame].end == placed.first
+                && self.tokens[placed.first - 1].text == "lane"
+        });
+        let located = matches!(self.tokens[placed.first].text.as_str(), "on" | "from" | "in") && !of_lane;
         let stays = |act: Option<Act>| match act {
             Some(Act::Park | Act::PullOver) => governs,
             Some(Act::PullOut | Act::LaneChange | Act::Drift | Act::Swerve | Act::Turn | Act::UTurn) => {
@@ -358,6 +377,9 @@ impl Parser<'_> {
         let turns = carry.frame.is_some_and(|frame| self.frames[frame].act() == Some(Act::Turn));
         let from = carry.preposition == Some("from") || turns && carry.preposition == Some("off");
         // "arrived from the west" goes east.
+        // "from south to north" goes north.
+        let pair = placed.end == placed.first + 3 && self.tokens[placed.first + 1].text == "to";
+        let from = from && !pair;
         let bare = matches!(self.tokens[placed.first].text.as_str(), "north" | "south" | "east" | "west");
         let compass = if from && bare { compass.turned(4) } else { compass };
         let stands = (compass, placed.first, placed.end);
@@ -366,7 +388,11 @@ impl Parser<'_> {
             carry.preposition = None;
             return;
         }
-        let onto = matches!(carry.preposition, Some("onto" | "into" | "to"));
+        // "driving to the north": so it drove.
+        let drives =
+            carry.frame.is_none_or(|frame| matches!(self.frames[frame].act(), Some(Act::Follow | Act::SetOff)));
+        let to = drives && placed.first > 0 && self.tokens[placed.first - 1].text == "the";
+        let onto = matches!(carry.preposition, Some("onto" | "into")) || carry.preposition == Some("to") && !to;
         let (governed, there) = (carry.preposition.is_some(), matches!(carry.preposition, Some("at" | "near")));
         carry.preposition = None;
         // Behind a noun that is an object: "a truck facing east" has its own frame; "yield to a van northbound on ..." is rare.
@@ -492,7 +518,12 @@ impl Parser<'_> {
         }
         let preposition = carry.preposition.take();
         carry.to = false;
-        if self.is_lane_of_others(placed.first) || self.is_astride(placed) {
+        // "nudged toward the shoulder", "in the direction of the shoulder": not there.
+        let toward = matches!(preposition, Some("toward" | "towards"))
+            || self.tokens[placed.first.saturating_sub(3)..placed.first]
+                .windows(2)
+                .any(|pair| pair[0].text == "direction" && pair[1].text == "of");
+        if toward && lane == LaneWord::Shoulder || self.is_lane_of_others(placed.first) || self.is_astride(placed) {
             return;
         }
         // "passed it in order to reach the left turn lane": not there yet.
@@ -584,7 +615,8 @@ impl Parser<'_> {
         let between = |back: &usize| ["the", "rightmost", "leftmost", "right", "left", ",", "-"].contains(&text(*back));
         let behind = (1..6).take_while(between).count() + 1;
         // "one lane to the left of the rightmost lane".
-        let beside = text(1) == "the" && text(2) == "of" && matches!(text(3), "left" | "right");
+        let beside = text(1) == "the"
+            && (text(2) == "of" && matches!(text(3), "left" | "right") || text(2) == "from" && text(3) == "over");
         in_it || beside || text(behind) == "to" && ["adjacent", "next"].contains(&text(behind + 1))
     }
 

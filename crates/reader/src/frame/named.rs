@@ -353,9 +353,18 @@ impl Parser<'_> {
             frame.object.is_none() && transitive(frame.sense) && !carry.fresh
         });
         match open {
-            Some(frame) if !carry.after_comma && !carry.inverts => self.object(frame, mention, placed, carry),
+            Some(frame) if !carry.after_comma && !carry.inverts || self.was_inserted(frame) => {
+                self.object(frame, mention, placed, carry);
+            }
             _ => self.subject(mention, carry, next),
         }
+    }
+
+    /// "struck, with its front, the rear of it": the object stands behind what is inserted.
+    fn was_inserted(&self, frame: usize) -> bool {
+        let frame = &self.frames[frame];
+        let word = |at: usize| self.tokens.get(at).map_or("", |token| token.text.as_str());
+        frame.is_contact() && frame.with.is_some() && word(frame.end) == "," && word(frame.end + 1) == "with"
     }
 
     /// "a dolly attached to the back of the truck": what is told of it in the sentence is told of the truck.
@@ -475,6 +484,6 @@ impl Parser<'_> {
         (carry.has_verb, carry.relative, carry.governed, carry.fresh) = (inverts, inner, false, false);
         (carry.be, carry.to, carry.progress) = (false, false, None);
         carry.negated = std::mem::take(&mut carry.nobody);
-        (carry.frame, carry.stranger) = (None, false);
+        (carry.frame, carry.stranger, carry.with) = (None, false, None);
     }
 }

@@ -15,14 +15,22 @@ impl Parser<'_> {
     pub(super) fn object_of(&mut self, preposition: &str, mention: &Mention, placed: &Placed, carry: &mut Carry) {
         // "a cyclist between the van and the curb": a pair, whatever verb comes.
         carry.pair |= preposition == "between" && carry.frame.is_none() && !self.world.actors[mention.actor].several;
+        // "and, with its tail, struck the wall": with which part it does what stands behind.
+        let own = carry.subject.as_ref().is_some_and(|subject| subject.actor == mention.actor);
+        if preposition == "with" && own && !carry.frame.is_some_and(|frame| self.frames[frame].is_contact()) {
+            carry.with = mention.piece.clone().filter(|piece| piece.its && zone_of(piece).is_some());
+        }
         let Some(frame) = carry.frame else { return };
         match preposition {
             "by" if self.frames[frame].sense == Sense::Tow => self.towed_by(frame, mention.actor),
             "by" => self.done_by(frame, mention, placed, carry),
+            "in" if mention.piece.is_some() && self.frames[frame].is_contact() => {
+                self.met(frame, preposition, mention, placed, carry);
+            }
             "into" | "against" => self.into(frame, preposition, mention, placed, carry),
             "off" if !self.frames[frame].is_contact() => {}
             // "came out from behind a van", "from between two vans".
-            "behind" | "between" if self.frames[frame].sense == Sense::Act(Act::Enter) => {
+            "behind" | "between" if matches!(self.frames[frame].act(), Some(Act::Enter | Act::Cross)) => {
                 self.frames[frame].object.get_or_insert(mention.actor);
             }
             "onto" | "with" | "between" | "and" | "upon" | "on" | "at" | "along" | "near" | "to" | "off" => {
@@ -187,7 +195,9 @@ impl Parser<'_> {
             self.world.actors[actor].announced |= headline && actor != SUBJECT;
         } else if contact && preposition == "with" && taken.who == Some(actor) && !taken.passive {
             // "struck its rear with the front of the van".
-            let struck = taken.object.is_some() || taken.on.is_some();
+            // "struck, with its front, the rear of it".
+            let inserted = self.tokens[taken.end].text == ",";
+            let struck = taken.object.is_some() || taken.on.is_some() || inserted;
             let piece = mention.piece.as_ref().filter(|piece| struck && zone_of(piece).is_some());
             taken.with = piece.cloned().or(taken.with.take());
         } else if contact && taken.object == Some(actor) && taken.on.is_none() {

@@ -72,17 +72,20 @@ fn only_other(world: &World, pair: Actor, first: usize) -> Option<Actor> {
 /// "A box from a truck struck it": the box came off the truck.
 fn came_off(frames: &mut Vec<Frame>, world: &World, tokens: &[Token]) {
     let first = frames.iter().position(Frame::is_contact);
-    let Some(number) = first.filter(|number| frames[*number].object == Some(SUBJECT) && !frames[*number].passive)
-    else {
+    let Some(number) = first.filter(|number| frames[*number].object == Some(SUBJECT)) else {
         return;
     };
     let frame = &frames[number];
     let Some(who) = frame.who.filter(|who| is_loose(world, *who)) else { return };
-    let Some((_, end)) = world.actors[who].kind_tokens.filter(|(_, end)| *end < frame.first) else { return };
+    // "was struck by a box from a truck".
+    let named = |end: usize| end < frame.first || frame.passive && end <= frame.end;
+    let Some((_, end)) = world.actors[who].kind_tokens.filter(|(_, end)| named(*end)) else { return };
     let from = matches!(tokens[end].text.as_str(), "from" | "off");
     let vehicle = |known: &Known| {
         known.kind.is_some_and(Kind::is_vehicle)
-            && known.kind_tokens.is_some_and(|(at, _)| (end..frame.first).contains(&at) || at < end)
+            && known
+                .kind_tokens
+                .is_some_and(|(at, _)| (end..frame.first.max(end + OFF_WITHIN)).contains(&at) || at < end)
     };
     let own = world.actors.iter().skip(1).any(vehicle);
     let told = frames[..number].iter().any(|before| before.who == Some(who) && before.act().is_some());
@@ -99,6 +102,9 @@ fn came_off(frames: &mut Vec<Frame>, world: &World, tokens: &[Token]) {
         frames.insert(number, falls);
     }
 }
+
+/// "a box from a large white truck": so near stands the vehicle. [tokens]
+const OFF_WITHIN: usize = 6;
 
 /// "A man threw a bottle toward it": the bottle came along.
 fn thrown(frames: &mut Vec<Frame>, world: &World, tokens: &[Token]) {

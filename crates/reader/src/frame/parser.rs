@@ -101,6 +101,8 @@ pub(super) struct Carry {
     pub(super) pair: bool,
     /// The verb stands before its subject: "Behind it stood a van", "Parked at the curb was a van".
     pub(super) inverts: bool,
+    /// The part with which the next verb is done.
+    pub(super) with: Option<Piece>,
     /// A thing that is attached to who is named next.
     pub(super) attached: Option<Actor>,
 }

@@ -60,10 +60,11 @@ impl Parser<'_> {
     /// "struck the AV on its left rear corner": of whom it struck. "struck the AV with its front": of who strikes.
     pub(super) fn part_behind_object(&self, carry: &Carry) -> Option<Actor> {
         let frame = carry.frame.map(|frame| &self.frames[frame]).filter(|frame| frame.is_contact() && !carry.fresh)?;
-        let (who, object) = (frame.who?, frame.object.filter(|object| frame.who != Some(*object))?);
+        let object = frame.object.filter(|object| frame.who != Some(*object));
+        let inserted = self.tokens.get(frame.end).is_some_and(|next| next.text == ",");
         match carry.preposition? {
-            "with" if !frame.passive => Some(who),
-            "on" | "at" | "along" | "in" | "near" if frame.on.is_none() => Some(object),
+            "with" if !frame.passive && (object.is_some() || inserted) => frame.who,
+            "on" | "at" | "along" | "in" | "near" if frame.on.is_none() && frame.who.is_some() => object,
             _ => None,
         }
     }

@@ -230,9 +230,24 @@ fn name_loose_boards(tokens: &mut [Token]) {
             loose = true;
         }
     }
+    loose |= (0..tokens.len()).any(|at| tokens[at].text == "skateboard" && is_riderless(&tokens[at + 1..]));
     for token in tokens.iter_mut().filter(|token| loose && token.text == "skateboard") {
         "object".clone_into(&mut token.text);
     }
+}
+
+/// "rolled downhill with nobody on it", "lying in the road": what stands behind a skateboard on which nobody is.
+fn is_riderless(behind: &[Token]) -> bool {
+    const WITHIN: usize = 8;
+    let words: Vec<&str> =
+        behind.iter().take(WITHIN).map(|token| token.text.as_str()).take_while(|word| *word != ".").collect();
+    let alone = words.windows(3).any(|row| {
+        matches!(
+            row,
+            ["with", "nobody", "on"] | ["with", "no", "rider"] | ["without", "a", "rider"] | ["no", "one", "on"]
+        )
+    });
+    alone || matches!(words.as_slice(), ["lying", ..] | ["that", "lay", ..] | ["which", "lay", ..])
 }
 
 /// "changed from the right lane to the left one", "transitioned from the next lane": a change of lanes, and what it leaves is told behind it.

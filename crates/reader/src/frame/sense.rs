@@ -12,7 +12,11 @@ use recrash_model::account::{Act, Compass, KindGroup, LeftRight};
 
 type Rule = fn(&Parser<'_>, &Spoken<'_>, &Carry) -> Option<Sense>;
 
-const SENSES: [Rule; 37] = [
+const SENSES: [Rule; 41] = [
+    goes_down_a_road,
+    is_operated_by,
+    goes_through_no_junction,
+    breaks_a_part,
     pulls_up_to,
     lies_on_its_side,
     stands_backed_up,
@@ -159,6 +163,47 @@ fn lies_on_its_side(parser: &Parser<'_>, verb: &Spoken<'_>, _carry: &Carry) -> O
         parser.tokens[placed.first..placed.end].windows(2).any(|pair| pair[0].text == "rest" && pair[1].text == "on");
     let own = word(0) == "its" && (word(1) == "side" || word(2) == "side" || matches!(word(1), "roof" | "top"));
     (verb.sense == Sense::Contact && rests && own).then_some(Sense::Other)
+}
+
+/// "an AV operated by Acme was stopped": it did not drive.
+fn is_operated_by(parser: &Parser<'_>, verb: &Spoken<'_>, _carry: &Carry) -> Option<Sense> {
+    let by = parser.tokens.get(verb.placed().end).is_some_and(|next| next.text == "by");
+    (by && verb.word(parser) == "operated" && single(verb.placed())).then_some(Sense::Other)
+}
+
+/// "drove through a parking garage", "going through a work zone": it enters no intersection.
+fn goes_through_no_junction(parser: &Parser<'_>, verb: &Spoken<'_>, _carry: &Carry) -> Option<Sense> {
+    const PLACES: [&str; 11] =
+        ["garage", "lot", "alley", "alleyway", "tunnel", "zone", "neighborhood", "curve", "area", "structure", "bend"];
+    let placed = verb.placed();
+    let through = verb.sense == Sense::Act(Act::Enter) && parser.tokens[placed.end - 1].text == "through";
+    let mut noun = parser.tokens[placed.end..].iter().take(5).take_while(|token| token.kind == TokenKind::Word);
+    let place = noun.find_map(|token| match token.text.as_str() {
+        "intersection" | "junction" | "the" | "light" => (token.text != "the").then_some(false),
+        word => PLACES.contains(&word).then_some(true),
+    });
+    (through && place == Some(true)).then_some(Sense::Act(Act::Follow))
+}
+
+/// "knocked the left mirror of the AV", "took off its mirror": a part is touched, and nobody pushed.
+fn breaks_a_part(parser: &Parser<'_>, verb: &Spoken<'_>, _carry: &Carry) -> Option<Sense> {
+    let words = &parser.tokens[verb.placed().first..verb.placed().end];
+    let knocks = verb.sense == Sense::Push && words.len() == 1 && words[0].text.starts_with("knock");
+    let takes =
+        words.len() == 2 && ["take", "took", "taking"].contains(&words[0].text.as_str()) && words[1].text == "off";
+    let part = matches!(verb.next(), Some(Chunk::Piece(piece)) if !piece.its);
+    (part && (knocks || takes)).then_some(Sense::Contact)
+}
+
+/// "went down Elm Street": it went along there, and did not fall.
+fn goes_down_a_road(parser: &Parser<'_>, verb: &Spoken<'_>, _carry: &Carry) -> Option<Sense> {
+    let end = verb.placed().end;
+    let down = verb.sense == Sense::Act(Act::LoseControl) && parser.tokens[end - 1].text == "down";
+    let next = parser.tokens.get(end)?;
+    let road = next.capital || next.text.contains("xxx") || matches!(next.text.as_str(), "the" | "a" | "its");
+    let ground =
+        parser.tokens.get(end + 1).is_some_and(|next| matches!(next.text.as_str(), "ground" | "pavement" | "side"));
+    (down && road && !ground).then_some(Sense::Act(Act::Follow))
 }
 
 /// "traffic was backed up" stands.

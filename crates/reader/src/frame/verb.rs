@@ -159,6 +159,9 @@ impl Parser<'_> {
         let mut frame = self.frame(who.map(|mention| mention.actor), sense, form, verb.placed(), carry);
         frame.person = who.and_then(|mention| mention.person);
         frame.with = who.and_then(|mention| mention.piece.clone());
+        if frame.is_contact() && frame.with.is_none() {
+            frame.with = carry.with.take();
+        }
         if sense == Sense::TakeOver && frame.person == Some(Occupant::Driver) {
             frame.who = Some(SUBJECT);
             self.world.own_driver = true;

@@ -265,7 +265,11 @@ impl<'a> Case<'a> {
         }
         // "The trailer came loose and rolled back westbound": the way it rolled, and not the one it faced.
         let loose = self.did(Act::Fall) && self.turn == Some(4);
-        if has_zone(&self.account.sv, Z::is_front) && (loose || !matches!(self.turn, Some(2..=6))) {
+        // It faces the way of the subject vehicle, and goes backwards toward it.
+        let same_way = self.turn == Some(4)
+            && only(&self.account.sv, |zone| zone == Z::Front)
+            && faces_only(self.reading, self.actor);
+        if has_zone(&self.account.sv, Z::is_front) && (loose || same_way || !matches!(self.turn, Some(2..=6))) {
             return by_rule(Origin::Ahead, "who goes backwards into the front was ahead");
         }
         None
