@@ -307,7 +307,10 @@ fn stands(fact: &ActFact) -> bool {
 fn is_behind_after(reading: &Reading<'_>, frame: &Frame, before: usize) -> bool {
     let word = |at: usize| reading.story.tokens.get(at).map_or("", |token| token.text.as_str());
     let main = &reading.story.frames[before];
-    let behind = frame.first.checked_sub(1).is_some_and(|at| word(at) == "after") && word(frame.first).ends_with("ing");
+    let after = frame.first.checked_sub(1).is_some_and(|at| word(at) == "after") && word(frame.first).ends_with("ing");
+    // "stopped, having turned left".
+    let having = frame.first.checked_sub(2).is_some_and(|at| word(at) == "," && word(at + 1) == "having");
+    let behind = after || having;
     behind && main.sentence == frame.sentence && main.joint != Some(Joint::After)
 }
 

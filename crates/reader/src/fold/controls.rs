@@ -186,7 +186,10 @@ pub(super) fn shown(
     at: usize,
     end: usize,
 ) -> Option<(ControlDevice, Option<SignalState>, usize)> {
-    const BETWEEN: [&str; 32] = [
+    const BETWEEN: [&str; 35] = [
+        "av",
+        "being",
+        "now",
         "was",
         "is",
         "which",
@@ -265,11 +268,14 @@ fn named(words: &[&str]) -> Option<(ControlDevice, Option<SignalState>, usize)> 
         ["right" | "left" | "turn", "on", "red", ..] | ["right" | "left", "turn", "on", "red", ..] => {
             (ControlDevice::Signal, Some(SignalState::Red), 3)
         }
-        ["on", "red", next, ..] if !matches!(*next, "light" | "signal" | "traffic") => {
+        ["on", "red", rest @ ..] if !matches!(rest.first(), Some(&("light" | "signal" | "traffic"))) => {
             (ControlDevice::Signal, Some(SignalState::Red), 2)
         }
-        ["on" | "at", "a", "red", next, ..]
-            if !matches!(*next, "light" | "signal" | "traffic" | "car" | "truck" | "curb" | "van") =>
+        ["on" | "at", "a", "red", rest @ ..]
+            if !matches!(
+                rest.first(),
+                Some(&("light" | "signal" | "traffic" | "car" | "truck" | "curb" | "van" | "arrow"))
+            ) =>
         {
             (ControlDevice::Signal, Some(SignalState::Red), 3)
         }
@@ -280,8 +286,11 @@ fn named(words: &[&str]) -> Option<(ControlDevice, Option<SignalState>, usize)> 
         | ["green", "left" | "right", "turn", ..] => (ControlDevice::Signal, Some(SignalState::Green), 2),
         ["yellow", "light" | "signal", ..] => (ControlDevice::Signal, Some(SignalState::Yellow), 2),
         ["traffic", "light" | "signal", ..] => (ControlDevice::Signal, None, 2),
-        ["at" | "for", "the" | "a" | "that", "light" | "signal" | "stoplight", next, ..]
-            if !matches!(*next, "rail" | "pole" | "post" | "speed" | "pace" | "from" | "truck" | "vehicle") =>
+        ["at" | "for", "the" | "a" | "that", "light" | "signal" | "stoplight", rest @ ..]
+            if !matches!(
+                rest.first(),
+                Some(&("rail" | "pole" | "post" | "speed" | "pace" | "from" | "truck" | "vehicle"))
+            ) =>
         {
             (ControlDevice::Signal, None, 3)
         }

@@ -228,8 +228,9 @@ fn into_its_lane(reading: &Reading<'_>) -> Option<Source> {
         let word = |at: usize| tokens.get(at).map_or("", |token| token.text.as_str());
         (first..end).any(|at| word(at) == "'s" && word(at + 1) == "lane" || word(at) == "its" && word(at + 1) == "lane")
     };
+    // "came over into its lane", and not "turned left and entered its lane".
     let (_, frame) = moves.find(|(number, _)| its_lane(*number))?;
-    left.then(|| reading.of(frame))
+    (left || frame.act() != Some(Act::Enter)).then(|| reading.of(frame))
 }
 
 /// Whether the partner goes round somebody else, up to the contact.

@@ -215,6 +215,9 @@ fn to_lane(reading: &Reading<'_>, actor: Actor, frame: &Frame, act: Act) -> Opti
         return None;
     }
     // A lane that is told behind it is not the one that it left.
+    if let Some(side) = lane_on_a_side(reading, frame) {
+        return Some(side);
+    }
     let own =
         reading.story.world.actors[actor].lane.filter(|(_, first, _)| *first < frame.first).map(|(lane, ..)| lane);
     let into = frame.lane.map(|(lane, ..)| lane);
@@ -224,6 +227,18 @@ fn to_lane(reading: &Reading<'_>, actor: Actor, frame: &Frame, act: Act) -> Opti
         (_, Some(LaneWord::Opposing)) => Some(LeftRight::Left),
         _ => None,
     }
+}
+
+/// "pulled into the lane on its left".
+fn lane_on_a_side(reading: &Reading<'_>, frame: &Frame) -> Option<LeftRight> {
+    let end = reading.story.sentences[frame.sentence].end.min(frame.end + 4);
+    let words: Vec<&str> =
+        reading.story.tokens[frame.first..end.max(frame.first)].iter().map(|token| token.text.as_str()).collect();
+    words.windows(4).find_map(|run| match run {
+        ["lane", "on" | "to", "its" | "the", "left"] => Some(LeftRight::Left),
+        ["lane", "on" | "to", "its" | "the", "right"] => Some(LeftRight::Right),
+        _ => None,
+    })
 }
 
 /// The side of a turn that only the column tells.

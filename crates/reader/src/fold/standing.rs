@@ -35,6 +35,13 @@ pub(super) fn state(reading: &Reading<'_>, actor: Actor) -> (Option<Fact<Contact
     let mut told = Told { moved: nominal::is_in_turn(reading, actor), ..Told::default() };
     for number in flashback::in_order(reading, actor).0 {
         let frame = &reading.story.frames[number];
+        if reading.doer(frame) == Some(actor)
+            && told.state.is_none()
+            && has_yet_to_stop(frame)
+            && !reading.is_after(number)
+        {
+            told.state = Some(Fact { value: ContactState::Moving, source: reading.of(frame) });
+        }
         if reading.doer(frame) != Some(actor) || !frame.happened() || reading.is_after(number) {
             continue;
         }
@@ -96,7 +103,13 @@ impl Told {
     /// Adds what one frame tells.
     fn add(&mut self, reading: &Reading<'_>, frame: &Frame, act: Act) {
         let text = reading.text[reading.story.tokens[frame.first].start..].to_lowercase();
-        let Some(next) = self.next(frame, act, &text) else { return };
+        // "Having stopped at a sign, it was driving on."
+        let own = ["was", "were"].contains(&word_before(reading, frame, 1)) && word_before(reading, frame, 2) != "and";
+        let Some(next) =
+            self.next(frame, act, &text).or(Some(ContactState::Moving).filter(|_| act == Act::Follow && own))
+        else {
+            return;
+        };
         // "was traveling at 1 mph, waiting for a gap".
         let words = &reading.story.tokens[self.spoken.min(frame.first)..frame.first];
         let rolls = act == Act::Hold
@@ -135,7 +148,7 @@ impl Told {
             // "was stopped at a light, heading west".
             Act::Follow | Act::Turn if self.stands() && same_clause => return None,
             // "reversed and maneuvered to the right": backwards.
-            Act::Drift | Act::Swerve
+            Act::Drift | Act::Swerve | Act::Park
                 if self.state() == Some(ContactState::Reversing)
                     && self.since.is_some_and(|(sentence, _)| sentence == frame.sentence) =>
             {
@@ -188,10 +201,24 @@ impl Told {
     }
 }
 
+/// "was about to stop", "had not yet stopped": it moves.
+fn has_yet_to_stop(frame: &Frame) -> bool {
+    let stops = matches!(frame.act(), Some(Act::Stop | Act::Slow)) && !frame.aside;
+    let meant = frame.progress == Progress::Wished && matches!(frame.joint, None | Some(Joint::While));
+    frame.who == Some(SUBJECT) && stops && (meant != frame.negated)
+}
+
+/// The word that stands so far before a frame.
+fn word_before<'a>(reading: &'a Reading<'_>, frame: &Frame, back: usize) -> &'a str {
+    frame.first.checked_sub(back).map_or("", |at| reading.story.tokens[at].text.as_str())
+}
+
 /// "was driving on after stopping": what is told behind "after" came first.
 fn is_behind_main(reading: &Reading<'_>, frame: &Frame) -> bool {
-    let before = frame.first.checked_sub(1).map_or("", |at| reading.story.tokens[at].text.as_str());
-    frame.form == Form::Ing && frame.joint == Some(Joint::After) && matches!(before, "after" | "following")
+    let before = word_before(reading, frame, 1);
+    let after = frame.form == Form::Ing && frame.joint == Some(Joint::After) && matches!(before, "after" | "following");
+    // "stopped, having turned left".
+    after || before == "having" && word_before(reading, frame, 2) == ","
 }
 
 /// "As it came to a stop, a cyclist hit it": it had yet to stand. With something told in between it had come to stand.
@@ -267,6 +294,9 @@ pub(super) fn reasons(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<StandReas
                 all.push(reading.told(reason, begins + at, begins + at + length));
             }
         }
+        if let Some(reason) = because(reading, number).filter(|_| all.is_empty()) {
+            all.push(reason);
+        }
         if let Some((reason, at, length)) = blocked_by(reading, end)
             && !all.iter().any(|known| known.value == reason)
         {
@@ -306,6 +336,35 @@ pub(super) fn reasons(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<StandReas
     all.sort_by_key(|reason| rank(reason.value));
     all.truncate(2);
     all
+}
+
+/// "stopped because cars ahead had stopped", "so a woman could cross": why, told in the clause behind.
+fn because(reading: &Reading<'_>, number: usize) -> Option<Fact<StandReason>> {
+    let (story, frame) = (&reading.story, &reading.story.frames[number]);
+    let other = |(_, next): &(usize, &Frame)| next.first > frame.first && !next.aside && next.who != frame.who;
+    let here = |(_, next): &(usize, &Frame)| next.sentence == frame.sentence;
+    let (at, next) = story.frames.iter().enumerate().skip(number + 1).take_while(here).find(other)?;
+    let why = |token: &Token| matches!(token.text.as_str(), "because" | "since" | "so");
+    let joint = (frame.end..next.first.max(frame.end)).find(|at| why(&story.tokens[*at]))?;
+    let who = next.who.filter(|_| !next.is_contact())?;
+    let (_, end) = reading.window(at);
+    let named = Lexicon::get().reasons(&story.tokens[joint..end]);
+    if let Some((reason, from, length)) = named.into_iter().min_by_key(|(reason, ..)| rank(*reason)) {
+        return Some(reading.told(reason, joint + from, joint + from + length));
+    }
+    let known = &story.world.actors[who];
+    let kind = known.kind?;
+    let stands = matches!(next.act(), Some(Act::Stop | Act::Hold | Act::Slow)) && next.happened();
+    let ahead = known.relations.iter().any(|(relation, _)| *relation == Relation::Ahead);
+    let value = match waits_for(kind) {
+        Some(reason) => reason,
+        None if !kind.is_vehicle() => return None,
+        None if stands && known.several => StandReason::Queue,
+        None if stands && ahead => StandReason::LeadVehicle,
+        None if next.progress == Progress::Wished => StandReason::Yield,
+        None => return None,
+    };
+    Some(Fact { value, source: reading.of(next) })
 }
 
 /// "stopped for a paramedic on foot": why, by whom it stops for.
@@ -372,8 +431,8 @@ fn lead_in(reading: &Reading<'_>, number: usize) -> Option<usize> {
     // "After dropping off a rider, it stopped", "vehicles were queued, so it stopped": why, told in a clause before.
     let riders = |other: &Frame| {
         let word = reading.story.tokens[other.first].text.as_str();
-        other.sense == Sense::Other
-            && ["drop", "pick", "let", "load", "unload"].iter().any(|stem| word.starts_with(stem))
+        let lets = ["drop", "pick", "let", "load", "unload"].iter().any(|stem| word.starts_with(stem));
+        other.sense == Sense::Other && lets || other.sense == Sense::See
     };
     let queue = |other: &Frame| {
         let several = other.who.is_some_and(|who| reading.story.world.actors[who].several && who != SUBJECT);

@@ -39,7 +39,8 @@ impl Parser<'_> {
             "under" if self.rolls_under(frame, mention) => {
                 self.touch(frame, self.frames[frame].who, mention, placed, carry);
             }
-            "for" if self.waits_for(frame, mention.actor) => {
+            "for" if self.waits_for(self.standing_before(frame), mention.actor) => {
+                let frame = self.standing_before(frame);
                 if !self.comes_across(mention.actor, placed.end) {
                     self.note(mention.actor, Relation::Ahead);
                 }
@@ -224,6 +225,15 @@ impl Parser<'_> {
             && frame.who == Some(SUBJECT)
             && known.kind.is_some_and(Kind::is_vehicle)
             && !known.several
+    }
+
+    /// "stood facing north for a van": the verb of standing before.
+    fn standing_before(&self, frame: usize) -> usize {
+        let Some(before) = frame.checked_sub(1) else { return frame };
+        let (facing, stands) = (&self.frames[frame], &self.frames[before]);
+        let same = (facing.sentence, facing.who) == (stands.sentence, stands.who);
+        let stood = matches!(stands.act(), Some(Act::Stop | Act::Hold));
+        if facing.sense == Sense::Face && same && stood { before } else { frame }
     }
 
     /// "stopped for an oncoming van", "for a van coming the other way", "halted, heading south, for a northbound van": not ahead in its lane.

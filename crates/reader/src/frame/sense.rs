@@ -354,7 +354,10 @@ fn is_held_by(parser: &Parser<'_>, verb: &Spoken<'_>, carry: &Carry) -> Option<S
     let held = be && verb.sense == Sense::Act(Act::Hold) && parser.tokens[placed.end - 1].text == "held";
     let behind = |at: usize| parser.tokens.get(verb.placed().end + at).map_or("", |token| token.text.as_str());
     let by = behind(0) == "by" || matches!(behind(0), "up" | "aloft" | "open" | "down") && behind(1) == "by";
-    (held && by).then_some(Sense::Other)
+    // "was held up by traffic" stands.
+    let waits =
+        (1..6).any(|at| matches!(behind(at), "traffic" | "light" | "signal" | "train" | "queue" | "congestion"));
+    (held && by && !waits).then_some(Sense::Other)
 }
 
 /// "a gate separating the lot from the street": nothing comes off.
@@ -498,7 +501,9 @@ fn drops_riders_off(parser: &Parser<'_>, verb: &Spoken<'_>, carry: &Carry) -> Op
     let drops = drops && (verb.sense == Sense::Act(Act::Fall) || carry.be && verb.form == Form::Ing);
     let rider =
         |chunk: &Chunk| matches!(chunk, Chunk::Noun(noun) if matches!(noun.occupant, Some((Occupant::Rider, _))));
-    let riders = verb.all[verb.at + 1..].iter().take(2).any(|placed| rider(&placed.chunk));
+    let named = |token: &Token| ["passenger", "rider", "customer"].iter().any(|stem| token.text.starts_with(stem));
+    let within = &parser.tokens[verb.placed().first..verb.placed().end];
+    let riders = within.iter().any(named) || verb.all[verb.at + 1..].iter().take(2).any(|placed| rider(&placed.chunk));
     let stands = carry.be && verb.form == Form::Ing;
     (drops && riders).then_some(if stands { Sense::Act(Act::Hold) } else { Sense::Other })
 }

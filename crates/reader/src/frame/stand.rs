@@ -15,6 +15,7 @@ pub(super) fn apply(tokens: &mut [Token]) {
         give_a_push(tokens, at);
         without_a_stop(tokens, at);
         on_green(tokens, at);
+        with_the_light(tokens, at);
     }
 }
 
@@ -100,7 +101,7 @@ fn stand_still(tokens: &mut [Token], at: usize) {
     let while_so = matches!(lead, "while" | "when" | "though" | "although" | "and" | "," | ".");
     let is = matches!(lead, "is" | "was" | "were" | "been" | "being" | "are") && hows > 0;
     // "came to a stop, at a standstill": told already.
-    let is = is || matches!(lead, "was" | "were") && matches!(word(tokens, at + 2), "halt");
+    let is = is || matches!(lead, "was" | "were") && matches!(word(tokens, at + 2), "halt" | "dead" | "temporary");
     // "Stationary at a light, it was hit", with no "while".
     let new = if matches!(lead, "," | ".") { "standing" } else { "stopped" };
     if while_so && (lead != "and" || hows > 0) || is {
@@ -114,7 +115,11 @@ fn stand_parked(tokens: &mut [Token], at: usize) {
     let parked = (word(tokens, at + 2 + parallel), word(tokens, at + 3 + parallel)) == ("parked", "position");
     let lead = at.checked_sub(1).map_or("", |at| word(tokens, at));
     if word(tokens, at) == "in" && word(tokens, at + 1) == "a" && parked && matches!(lead, "was" | "," | "while") {
-        put(tokens, at, at + 4 + parallel, "parked");
+        let comma = lead == ",";
+        put(tokens, at + usize::from(comma), at + 4 + parallel, "parked");
+        if comma {
+            "while".clone_into(&mut tokens[at].text);
+        }
     }
 }
 
@@ -124,6 +129,12 @@ fn has_not_moved(tokens: &mut [Token], at: usize) {
     let yet = usize::from(word(tokens, at + 1) == "yet");
     if not && (word(tokens, at + 1 + yet), word(tokens, at + 2 + yet)) == ("in", "motion") {
         put(tokens, at, at + 3 + yet, "stopped");
+        return;
+    }
+    // "was no longer in motion".
+    let no_longer = (word(tokens, at), word(tokens, at + 1)) == ("no", "longer");
+    if no_longer && (word(tokens, at + 2), word(tokens, at + 3)) == ("in", "motion") {
+        put(tokens, at, at + 4, "stopped");
         return;
     }
     let has = matches!(word(tokens, at), "had" | "has" | "have" | "was" | "is");
@@ -227,7 +238,8 @@ fn without_a_stop(tokens: &mut [Token], at: usize) {
     let full = usize::from(matches!(word(tokens, at + 2), "full" | "complete" | "proper" | "required"));
     let stop = word(tokens, at + 2 + full) == "stop" && word(tokens, at + 3 + full) != "sign";
     if word(tokens, at) == "without" && word(tokens, at + 1) == "a" && stop {
-        put(tokens, at + 1, at + 3 + full, "stopping");
+        tokens[at + 1..at + 2 + full].iter_mut().for_each(|token| "ever".clone_into(&mut token.text));
+        "stopping".clone_into(&mut tokens[at + 2 + full].text);
     }
 }
 
@@ -267,5 +279,24 @@ fn on_green(tokens: &mut [Token], at: usize) {
             "turned".clone_into(&mut tokens[at + 2].text);
         }
         _ => {}
+    }
+}
+
+/// "With the light (now) green, it set off", "the light being red": it was.
+fn with_the_light(tokens: &mut [Token], at: usize) {
+    let light = |at: usize| matches!(word(tokens, at), "light" | "signal");
+    let colour = |at: usize| matches!(word(tokens, at), "red" | "green" | "yellow") && !tokens[at].capital;
+    let (with, the) = (word(tokens, at) == "with", matches!(word(tokens, at + 1), "the" | "its"));
+    let now = matches!(word(tokens, at + 3), "now" | "still" | "showing" | "already" | "being");
+    if with && the && light(at + 2) && (colour(at + 3) || now && colour(at + 4)) {
+        let was = at + 2 + usize::from(now);
+        if !now {
+            let named = tokens[at + 2].text.clone();
+            tokens[at + 1].text = named;
+        }
+        "when".clone_into(&mut tokens[at].text);
+        "was".clone_into(&mut tokens[was].text);
+    } else if light(at) && word(tokens, at + 1) == "being" && colour(at + 2) {
+        "was".clone_into(&mut tokens[at + 1].text);
     }
 }
