@@ -404,7 +404,10 @@ impl Chunker<'_> {
                 return (Some(Chunk::Pronoun), 2);
             }
             // "Both were northbound".
-            "both" if matches!(self.text(at + 1), "were" | "are" | "had") => Chunk::Pronoun,
+            "both" if matches!(self.text(at + 1), "were" | "are" | "had") || self.does_at_once(at + 1) => {
+                Chunk::Pronoun
+            }
+            "itself" if at > self.first && matches!(self.text(at - 1), "was" | "is" | "had" | "also") => Chunk::Word,
             "it" | "they" | "them" | "itself" | "he" | "she" | "him" => Chunk::Pronoun,
             "we" | "us" => Chunk::Noun(Noun { subject: true, ..Noun::unnamed() }),
             "that" if self.is_demonstrative(at) => Chunk::Word,
@@ -426,6 +429,11 @@ impl Chunker<'_> {
             },
         };
         (Some(chunk), 1)
+    }
+
+    /// "both moved off", and not "both stopped vehicles".
+    fn does_at_once(&self, at: usize) -> bool {
+        self.noun(at).is_none() && matches!(self.verb(at, &[]), Some((_, Form::Past, _)))
     }
 
     /// "in that lane", "entered that lane": no relative stands behind a preposition, or before a place.

@@ -180,7 +180,10 @@ impl Chunker<'_> {
             _ => (Article::None, 0),
         };
         let group = self.is_group(first);
-        let noun = Noun { article, several: group, ..Noun::unnamed() };
+        let mut noun = Noun { article, several: group, ..Noun::unnamed() };
+        if length == 3 && !group && self.text(first) == "the" {
+            noun.adjectives.push(Adjective::Another);
+        }
         let (at, one_of) = (first + length, length > 1 && !group);
         Draft { noun, first, at, one_of, subject: false, make: false, plural: false, strange: 0 }
     }
@@ -202,7 +205,8 @@ impl Chunker<'_> {
             return Lead::Head(meaning, length);
         }
         // "the slowly moving van".
-        let intensifies = self.text(at).ends_with("ly") && determined && self.adjective(at + 1);
+        let adverb = self.text(at).ends_with("ly") || matches!(self.text(at), "then" | "still" | "now");
+        let intensifies = adverb && determined && self.adjective(at + 1);
         if self.joins_adjectives(at, &draft.noun) || intensifies {
             draft.at += 1;
             return Lead::On;

@@ -330,7 +330,7 @@ impl Candidate<'_> {
 impl Chunker<'_> {
     /// The verb that begins here: what it says, its form, and the tokens that it takes.
     pub(super) fn verb(&self, at: usize, before: &[Placed]) -> Option<(Sense, Form, usize)> {
-        let token = &self.tokens[at];
+        let token = self.tokens.get(at)?;
         // "AV stationary at a red light", in the style of telegrams.
         let named = matches!(before, [Placed { chunk: Chunk::Noun(noun), end, .. }] if noun.subject && *end == at);
         if named && matches!(token.text.as_str(), "stationary" | "motionless" | "idle" | "static") {

@@ -41,7 +41,12 @@ impl Contacts {
             let early = headline_of(story);
             // "A van rear-ended it. ... A passenger car rear-ended it": the same one, called otherwise.
             let names = |frame: &Frame, other: Actor| {
-                [frame.who, frame.object].contains(&Some(other)) && !story.world.actors[other].another
+                // "hit by the second of two vans. ... A second van": whom nothing else is told of.
+                let only = story
+                    .frames
+                    .iter()
+                    .all(|told| told.sentence == frames[first].sentence || told.who != Some(partner));
+                [frame.who, frame.object].contains(&Some(other)) && (!story.world.actors[other].another || only)
             };
             let again = touching.iter().find(|(number, other)| {
                 let frame = &frames[*number];

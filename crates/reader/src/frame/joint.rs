@@ -255,7 +255,9 @@ impl Parser<'_> {
         // "at which time the operator ...": the operator is not behind "at".
         (carry.preposition, carry.relation) = (None, None);
         // "the bracket that holds the sensor": of a thing without a name.
-        if self.of_a_word(all, at) {
+        // "along an alley, which lies east of Elm Street": of the alley.
+        let which = self.tokens[all[at].first].text == "which" && at > 1 && matches!(all[at - 1].chunk, Chunk::Comma);
+        if self.of_a_word(all, at) || which && matches!(all[at - 2].chunk, Chunk::Spot(_)) {
             (carry.outer, carry.subject) = (carry.subject.take(), None);
             (carry.frame, carry.has_verb, carry.stranger) = (None, false, true);
             carry.relative = true;

@@ -12,6 +12,7 @@ enum Does {
     Pass,
     Park,
     Stop,
+    Swerve,
 }
 
 /// A noun of a manoeuvre.
@@ -103,7 +104,7 @@ fn is_unknown(verb: &str, named: &Named, begins: bool) -> bool {
         Does::Turn => rare || verb.starts_with("commenc"),
         Does::ChangeLanes => rare || verb.starts_with("commenc") || named.of_lanes,
         Does::Stop => !begins,
-        Does::Reverse | Does::Pass | Does::Park => true,
+        Does::Reverse | Does::Pass | Does::Park | Does::Swerve => true,
     }
 }
 
@@ -131,7 +132,10 @@ fn named(tokens: &[Token], from: usize) -> Option<Named> {
         return None;
     }
     let noun = (from + 1..from + WORDS).find(|at| {
-        matches!(word(*at), "turn" | "change" | "maneuver" | "manoeuvre" | "movement" | "pass" | "overtake" | "stop")
+        matches!(
+            word(*at),
+            "turn" | "change" | "maneuver" | "manoeuvre" | "movement" | "pass" | "overtake" | "stop" | "swerve"
+        )
     })?;
     let between: Vec<&str> = (from + 1..noun).map(word).collect();
     let how = |word: &&str| {
@@ -148,6 +152,7 @@ fn named(tokens: &[Token], from: usize) -> Option<Named> {
             (Does::ChangeLanes, noun + 3)
         }
         "pass" | "overtake" if between.is_empty() && word(from) != "the" => (Does::Pass, noun + 1),
+        "swerve" if plain => (Does::Swerve, noun + 1),
         "stop" if matches!(word(from), "its" | "his" | "her") && between.is_empty() => (Does::Stop, noun + 1),
         _ if maneuver && matches!(last, "backing" | "reversing" | "reverse" | "backward") => (Does::Reverse, noun + 1),
         _ if maneuver && matches!(last, "passing" | "overtaking") => (Does::Pass, noun + 1),
@@ -176,6 +181,8 @@ fn reword(tokens: &mut [Token], first: usize, named: &Named, form: &str) {
         (Does::Reverse, _) => "revers",
         (Does::Pass, _) => "pass",
         (Does::Park, _) => "park",
+        (Does::Swerve, "") => "swerve",
+        (Does::Swerve, _) => "swerv",
         (Does::Stop, "") => "stop",
         (Does::Stop, _) => "stopp",
     };

@@ -173,6 +173,7 @@ pub fn story(text: &str, own: Own<'_>) -> Story {
             COMPANY.clone_into(&mut tokens[at].text);
         }
     }
+    name_operators(&mut tokens);
     reword::apply(&mut tokens);
     let sentences = crate::token::sentences(&tokens);
     let (mut standing, mut frames, mut world) = best(&tokens, &sentences, own);
@@ -238,6 +239,45 @@ pub fn story(text: &str, own: Own<'_>) -> Story {
     }
     Story { tokens, sentences, standing, frames, world }
 }
+
+/// "A Tern autonomous vehicle ... the Tern vehicle", "a Tern vehicle driving in autonomous mode": a company whose name the lexicon does not know
+/// is known by its first vehicle.
+fn name_operators(tokens: &mut [Token]) {
+    let word = |at: usize| tokens.get(at).map_or("", |token| token.text.as_str());
+    let lexicon = Lexicon::get();
+    let subject = |at: usize| lexicon.longest(tokens, at, |meaning| matches!(meaning, Meaning::Subject)).is_some();
+    let drives_itself = |at: usize| {
+        let behind: Vec<&str> = (at..at + OWN_MODE_WITHIN).map(word).take_while(|word| *word != ".").collect();
+        behind.windows(2).any(|pair| {
+            matches!(
+                (pair[0], pair[1]),
+                ("autonomous" | "automated", "mode" | "system") | ("in", "autonomy") | ("ads", "engaged")
+            )
+        })
+    };
+    let named = |at: &usize| {
+        let token = &tokens[*at];
+        let unknown = token.capital
+            && token.kind == TokenKind::Word
+            && token.text.len() > 3
+            && lexicon.longest(tokens, *at, |_| true).is_none();
+        let vehicle = matches!(word(at + 1), "vehicle" | "truck" | "shuttle" | "car");
+        let called =
+            subject(at + 1) && !vehicle || vehicle && (word(at + 2) == "(" && subject(at + 3) || drives_itself(at + 2));
+        unknown && *at > 0 && matches!(word(at - 1), "a" | "an" | "the" | "our") && called
+    };
+    if (0..tokens.len()).any(|at| lexicon.longest(tokens, at, |meaning| matches!(meaning, Meaning::Company)).is_some())
+    {
+        return;
+    }
+    let Some(name) = (0..tokens.len()).find(named).map(|at| tokens[at].text.clone()) else { return };
+    for token in tokens.iter_mut().filter(|token| token.capital && token.text == name) {
+        COMPANY.clone_into(&mut token.text);
+    }
+}
+
+/// "a Tern truck traveling with its safety driver in autonomous mode": so near stands what drives it. [tokens]
+const OWN_MODE_WITHIN: usize = 10;
 
 /// "A man threw a bottle at both cars", where one other is known at most: the subject vehicle is one of the two.
 fn strikes_both(frames: &mut [Frame], world: &mut World, tokens: &[Token]) {

@@ -96,6 +96,7 @@ impl Parser<'_> {
                 "approximately" | "around" | "over" | "almost" | "nearly" | "whose" | "directly" | "right"
             );
         match before.chunk {
+            Chunk::Word if matches!(word, "crossing" | "building" | "landing") => true,
             Chunk::Word => !between && !(word.ends_with("ing") && !self.tokens[before.first].capital),
             Chunk::Spot(_) | Chunk::Lane(_) | Chunk::Compass(_) => true,
             _ => false,
@@ -261,6 +262,7 @@ impl Parser<'_> {
         let actor = struck.unwrap_or_else(|| self.not_itself(self.its(&self.tokens[all[at].first].text, carry), carry));
         let actor = self.not_who_stands(actor, all, at, carry);
         let actor = if self.stops_because(all, at, carry) { SUBJECT } else { actor };
+        let actor = self.flew_there(all, at, carry).unwrap_or(actor);
         let actor = self.latter(all[at].first).unwrap_or(actor);
         let both = self.both(all, at).filter(|_| carry.main.is_none());
         let mention = Mention { actor: both.unwrap_or(actor), piece: None, person: None, end: all[at].end };
@@ -269,6 +271,14 @@ impl Parser<'_> {
             carry.also = carry.subject.clone().map(|subject| Mention { actor: SUBJECT, ..subject });
         }
         false
+    }
+
+    /// "launched the crate into its path, where it hit the hood": the thing that came there.
+    fn flew_there(&self, all: &[Placed], at: usize, carry: &Carry) -> Option<Actor> {
+        let hits = matches!(all.get(at + 1).map(|placed| &placed.chunk), Some(Chunk::Verb(Sense::Contact, _)));
+        let last = self.frames.last().filter(|frame| carry.place && hits && frame.sentence == self.sentence)?;
+        let thing = |actor: &Actor| *actor != SUBJECT && !self.world.actors[*actor].acts();
+        if last.sense == Sense::Push { last.object.filter(thing) } else { last.who.filter(thing) }
     }
 
     /// "Because a truck blocked the lane, it stopped": whom the story is about.
@@ -477,7 +487,7 @@ impl Parser<'_> {
         self.led_by(actor, carry);
         let inverts = std::mem::take(&mut carry.inverts);
         // "a van that it was following reversed": a clause within the other one.
-        let inner = carry.relative && carry.fresh && carry.outer.is_some();
+        let inner = carry.relative && carry.outer.is_some() && !carry.has_verb && carry.frame.is_none();
         carry.gap = carry.subject.as_ref().filter(|_| inner).map(|subject| subject.actor);
         carry.subject = Some(mention.clone());
         carry.last = Some(mention);

@@ -80,7 +80,7 @@ fn came_off(frames: &mut Vec<Frame>, world: &World, tokens: &[Token]) {
     // "was struck by a box from a truck".
     let named = |end: usize| end < frame.first || frame.passive && end <= frame.end;
     let Some((_, end)) = world.actors[who].kind_tokens.filter(|(_, end)| named(*end)) else { return };
-    let from = matches!(tokens[end].text.as_str(), "from" | "off");
+    let from = tokens.get(end).is_some_and(|next| matches!(next.text.as_str(), "from" | "off"));
     let vehicle = |known: &Known| {
         known.kind.is_some_and(Kind::is_vehicle)
             && known

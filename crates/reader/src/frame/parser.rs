@@ -183,7 +183,8 @@ impl Parser<'_> {
             return;
         }
         let frames = &self.frames[begun..];
-        let Some(touch) = frames.iter().find(|frame| frame.is_contact()) else { return };
+        let crash = |frame: &&Frame| frame.is_contact() || frame.sense == Sense::Headline && frame.object.is_none();
+        let Some(touch) = frames.iter().find(crash) else { return };
         // "It and a van collided": a frame of each.
         let twin = frames.iter().find(|frame| frame.first == touch.first && frame.who != touch.who);
         let (Some(who), Some(object)) = (touch.who, touch.object.or(twin.and_then(|twin| twin.who))) else { return };
@@ -192,7 +193,8 @@ impl Parser<'_> {
             _ => return,
         };
         let leads = |frame: &Frame| {
-            frame.act().is_some_and(|act| act != Act::Hold) && frame.happened() && !frame.aside && !frame.is_contact()
+            let told = frame.act().is_some_and(|act| act != Act::Hold) && frame.happened();
+            told && !(frame.aside || frame.described || frame.is_contact())
         };
         let rides = |kind: Kind| {
             kind.is_vehicle()
@@ -202,7 +204,7 @@ impl Parser<'_> {
         let told = frames.iter().any(leads);
         let rear_ends = touch.sense == Sense::RearEnd && who == other;
         let known = &mut self.world.actors[other];
-        if !told && !known.several && known.mentions == 1 && known.kind.is_some_and(rides) {
+        if !told && !(known.several || known.another) && known.mentions == 1 && known.kind.is_some_and(rides) {
             known.announced = true;
             if rear_ends {
                 known.place(Relation::Behind, self.sentence);

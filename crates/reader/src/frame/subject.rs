@@ -393,7 +393,14 @@ impl Parser<'_> {
             Chunk::Relation(relation) => matches!(relation, Relation::Behind | Relation::Ahead | Relation::Beside),
             _ => false,
         };
-        moves && plain && of && !place && !carry.be && !carry.after_comma
+        // "in an alley running between two streets", "on a road going past a school".
+        let runs = matches!(self.tokens[verb.placed().first].text.as_str(), "running" | "going" | "coming" | "leading");
+        let road = matches!(noun.chunk, Chunk::Spot(_))
+            || matches!(noun.chunk, Chunk::Word)
+                && matches!(word(noun), "road" | "street" | "ramp" | "path" | "drive" | "way");
+        let way = matches!(verb.next(), Some(Chunk::Compass(_)));
+        let at_once = !carry.be && !carry.after_comma && noun.end == verb.placed().first;
+        moves && plain && of && !place && at_once || runs && road && !way && at_once && verb.form == Form::Ing
     }
 
     /// "in a queue of traffic", "in a line of cars".

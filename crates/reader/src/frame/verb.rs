@@ -46,7 +46,8 @@ impl Parser<'_> {
         leave_relative(&verb, carry);
         let own_progress = carry.progress;
         let leads = self.leads(&verb, carry);
-        if leads && matches!(verb.sense, Sense::Other | Sense::Act(Act::Follow)) && next_is_verb(all, at) {
+        let led = matches!(verb.sense, Sense::Other | Sense::Push | Sense::Act(Act::Follow));
+        if leads && led && next_is_verb(all, at) {
             return self.only_leads(&verb, carry);
         }
         go_back(&verb, carry);
@@ -129,7 +130,12 @@ impl Parser<'_> {
         if !single(verb.placed()) {
             return false;
         }
-        let Some(progress) = self.lexicon.progress(verb.word(self)) else { return false };
+        // "was forced to brake": so it did.
+        let forced = carry.be
+            && matches!(verb.word(self), "forced" | "caused" | "compelled" | "obliged")
+            && next_is_verb(all, at);
+        let forced = forced.then_some(Progress::Real);
+        let Some(progress) = self.lexicon.progress(verb.word(self)).or(forced) else { return false };
         if !next_is_verb(all, at) && (sense != Sense::Other || looks_somewhere(all, at)) {
             return false;
         }
@@ -220,7 +226,13 @@ impl Parser<'_> {
         // "approached a truck stopped in the road": it stood there.
         let of_object = carry.has_verb && last && who != carry.subject.as_ref();
         let while_so = carry.fresh && carry.joint == Some(Joint::While);
-        described || verb.is_bare(self) && (participle || of_object || while_so)
+        // "There was a van parked on its right".
+        let there = verb.at > 2
+            && matches!(verb.all[verb.at - 1].chunk, Chunk::Noun(_))
+            && matches!(verb.all[verb.at - 2].chunk, Chunk::Be)
+            && self.tokens[verb.all[verb.at - 3].first].text == "there"
+            || verb.at == 3 && self.tokens[verb.all[0].first].text == "there" && matches!(verb.all[1].chunk, Chunk::Be);
+        described || verb.is_bare(self) && (participle || of_object || while_so || there)
     }
 
     /// How far a verb came that is told as a purpose, or behind "before".
@@ -271,7 +283,8 @@ impl Parser<'_> {
         let Spoken { sense, form, all, at } = *verb;
         frame.passive = be && form == Form::Past && next_preposition(all, at) == Some("by");
         // "a ball, followed by a dog": without "was" too.
-        let followed = sense == Sense::Act(Act::Follow) && matches!(verb.word(self), "followed" | "trailed" | "tailed");
+        let followed = sense == Sense::Act(Act::Follow) && matches!(verb.word(self), "followed" | "trailed" | "tailed")
+            || verb.word(self) == "overtaken";
         frame.passive |= followed && form == Form::Past && matches!(verb.next(), Some(Chunk::Preposition("by")));
         // "was approached from behind by a bus", "while being overtaken".
         let passed = matches!(verb.word(self), "passed" | "overtaken" | "approached")
