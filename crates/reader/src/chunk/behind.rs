@@ -6,6 +6,9 @@ use crate::lexicon::{Meaning, Occupant};
 use crate::token::TokenKind;
 use recrash_model::account::{Kind, KindGroup};
 
+/// "a panel on the rear of a large white van fell off": so many words may stand between. [tokens]
+const PART_WITHIN: usize = 11;
+
 impl Chunker<'_> {
     /// A noun with what stands behind it from `at` on and belongs to it; "'s rear bumper" is left to others.
     pub(super) fn finish(&self, mut noun: Noun, first: usize, at: usize) -> Option<(Noun, usize)> {
@@ -194,6 +197,29 @@ impl Chunker<'_> {
         let again =
             self.text(first) == "the" && wheel(first + 1) && self.text(first + 2) != "of" && (0..first).any(loose);
         (begins || again).then_some(first + 2)
+    }
+
+    /// Behind a part that is on no vehicle any more: "a panel on the rear of a van fell off", and "the panel" further on.
+    pub(super) fn loose_part(&self, first: usize) -> Option<usize> {
+        const PARTS: [&str; 8] = ["panel", "bumper", "hood", "tailgate", "fender", "hubcap", "mirror", "grille"];
+        let named = |at: usize| PARTS.contains(&self.text(at));
+        let comes_off = |at: usize| {
+            let comes = matches!(self.text(at), "came" | "fell" | "flew" | "broke" | "dropped" | "tore" | "detached");
+            comes && matches!(self.text(at + 1), "off" | "from" | "loose")
+        };
+        let begins = |at: usize| {
+            let part = (at + 1..at + 4).find(|&at| named(at)).filter(|_| matches!(self.text(at), "a" | "an"))?;
+            let mut clause = (part + 1..part + PART_WITHIN)
+                .take_while(|&at| !matches!(self.text(at), "." | "," | "and" | "when" | "as" | ""));
+            let off = clause.find(|&at| comes_off(at))?;
+            let own = self.noun(off + 2).is_some_and(|(noun, _)| noun.subject);
+            (!own).then_some(part + 1)
+        };
+        let again = self.text(first) == "the"
+            && named(first + 1)
+            && self.text(first + 2) != "of"
+            && (0..first).any(|at| begins(at).is_some_and(|end| self.text(end - 1) == self.text(first + 1)));
+        begins(first).or(again.then_some(first + 2))
     }
 
     /// "several tires fell from a trailer", and "the tires", "one of the tires" further on. Behind it; whether it is one of them.

@@ -201,6 +201,16 @@ const PURPOSE_WITHIN: usize = 10;
 const DETERMINERS: [&str; 14] =
     ["the", "this", "that", "these", "those", "its", "their", "his", "her", "our", "a", "an", "one", "any"];
 
+/// "the vehicle": which one, the story tells.
+fn is_the_vehicle(noun: &Noun) -> bool {
+    noun.kind == Some(Kind::Vehicle)
+        && noun.article == Article::Definite
+        && noun.adjectives.is_empty()
+        && noun.names.is_empty()
+        && noun.number.is_none()
+        && !noun.several
+}
+
 /// Whether a noun begins with this word.
 pub fn is_determiner(word: &str) -> bool {
     DETERMINERS.contains(&word)
@@ -350,7 +360,7 @@ impl Chunker<'_> {
         let (word, street) =
             (self.text(at), matches!(self.text(at + 2), "street" | "road" | "roadway" | "alley" | "alleyway"));
         let length = match self.noun(at + 1) {
-            Some((noun, length)) if noun.subject && noun.occupant.is_none() => length,
+            Some((noun, length)) if (noun.subject || is_the_vehicle(&noun)) && noun.occupant.is_none() => length,
             _ if street && is_determiner(self.text(at + 1)) => 2,
             _ => return None,
         };

@@ -72,6 +72,10 @@ impl Chunker<'_> {
             let article = if self.text(first) == "the" { Article::Definite } else { Article::Indefinite };
             return Some((Noun { article, kind: Some(Kind::LooseWheel), ..Noun::unnamed() }, behind - first));
         }
+        if let Some(behind) = self.loose_part(first) {
+            let article = if self.text(first) == "the" { Article::Definite } else { Article::Indefinite };
+            return Some((Noun { article, kind: Some(Kind::Debris), ..Noun::unnamed() }, behind - first));
+        }
         if let Some((behind, one_of)) = self.loose_wheels(first) {
             let article = match self.text(first) {
                 "the" => Article::Definite,

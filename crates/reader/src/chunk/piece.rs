@@ -28,7 +28,7 @@ impl Draft {
 impl Chunker<'_> {
     /// A part of a vehicle, with whose it is.
     pub(super) fn piece(&self, first: usize) -> Option<(Piece, usize)> {
-        if self.loose_wheel(first).is_some() {
+        if self.loose_wheel(first).is_some() || self.loose_part(first).is_some() {
             return None;
         }
         let determined = DETERMINERS.contains(&self.text(first));

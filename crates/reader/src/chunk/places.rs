@@ -11,7 +11,7 @@ const LONGEST_LANE_NAME: usize = 9;
 const BOTH_WITHIN: usize = 12;
 
 /// "had three lanes. It was in the middle one": so many words before it. [tokens]
-const LANES_BEFORE: usize = 24;
+const LANES_BEFORE: usize = 40;
 
 const LEFT: &[&str] = &["left", "leftmost", "inside", "fast", "inner", "innermost"];
 const RIGHT: &[&str] = &["right", "rightmost", "outside", "slow", "outer", "outermost"];
@@ -173,13 +173,21 @@ impl Chunker<'_> {
         if word == "shoulder" {
             return Some((LaneWord::Shoulder, 1));
         }
-        if let Some(counted) = self.counted_lane(at).or_else(|| self.counted_turn_lane(at)) {
-            return Some(counted);
+        if let Some((lane, length)) = self.counted_lane(at).or_else(|| self.counted_turn_lane(at)) {
+            // "the second lane from the left among the lanes for left turns".
+            let of = at + length;
+            let among = matches!(self.text(of), "among" | "of") && self.text(of + 1) == "the";
+            let turns =
+                self.lane(of + 2).filter(|(lane, _)| among && matches!(lane, LaneWord::LeftTurn | LaneWord::RightTurn));
+            return turns.map(|(lane, more)| (lane, length + 2 + more)).or(Some((lane, length)));
         }
         if let Some(numbered) = self.numbered_lane(at).or_else(|| self.ordinal_lane(at)) {
             return Some(numbered);
         }
         let two_way = word == "two" && self.text(at + 1) == "way";
+        if let Some(that) = self.that_lane(at) {
+            return Some(that);
+        }
         if matches!(word, "lane" | "lanes") {
             return self.told_behind_lane(at).map(|(lane, length)| (lane, 1 + length));
         }
@@ -199,15 +207,17 @@ impl Chunker<'_> {
         if !pocket && !matches!(self.text(end), "lane" | "lanes") {
             return None;
         }
+        let named = LANES.iter().find(|(names, _)| names.iter().all(|words| has(words))).map(|(_, lane)| *lane);
         if let Some((lane, length)) = self.told_behind_lane(end) {
-            return Some((lane, end + 1 + length - at));
+            // "the left turn lane farthest to the right".
+            let turns = named.filter(|lane| matches!(lane, LaneWord::LeftTurn | LaneWord::RightTurn));
+            return Some((turns.unwrap_or(lane), end + 1 + length - at));
         }
         // "the left adjacent lane" is a place beside somebody, and is told as a relation.
         if has(&["adjacent", "next", "neighboring"]) {
             return None;
         }
-        let (_, lane) = LANES.iter().find(|(names, _)| names.iter().all(|words| has(words)))?;
-        Some((*lane, end + 1 - at))
+        Some((named?, end + 1 - at))
     }
 
     /// "the rightmost of the three lanes", "the right one of two lanes": small words between.
@@ -230,11 +240,24 @@ impl Chunker<'_> {
         // "to the left of the two lanes" is a place.
         let place = first >= 2 && self.text(first - 1) == "the" && self.text(first - 2) == "to";
         match self.text(at) {
+            "its" if self.text(at + 1) == "lanes" => !place && self.text(at - 1) == "of",
             "the" | "its" | "these" | "those" => !place && self.text(at - 1) == "of" && count(at + 1),
             "several" | "multiple" | "five" | "six" => !place && self.text(at - 1) == "of",
             "one" => self.text(at + 1) == "of",
             _ => false,
         }
+    }
+
+    /// "A van was unloading in the rightmost lane, and it stopped in that lane": the one that was named last.
+    fn that_lane(&self, at: usize) -> Option<(LaneWord, usize)> {
+        let that = self.text(at) == "that" && self.text(at + 1) == "lane";
+        if !that || at < 2 || !matches!(self.text(at - 1), "in" | "within") {
+            return None;
+        }
+        let last = (at.saturating_sub(LANES_BEFORE)..at - 1).rfind(|&at| self.text(at) == "lane")?;
+        let named = (last.saturating_sub(LONGEST_LANE_NAME)..=last).filter(|&at| in_lane_names(self.text(at)));
+        let (lane, _) = named.filter_map(|at| self.lane(at).filter(|(_, length)| at + length > last)).next()?;
+        Some((lane, 2))
     }
 
     /// "The street has three lanes, and it was in the right one": one of those that were named before.
@@ -264,6 +287,10 @@ impl Chunker<'_> {
     /// What the words behind "lane" make of it, and their tokens: "farthest to the left", "for left turns", "2 of 3".
     fn told_behind_lane(&self, lane: usize) -> Option<(LaneWord, usize)> {
         let behind = lane + 1;
+        // "just left of the slip lane for right turns".
+        if self.text(lane - 1) == "slip" {
+            return None;
+        }
         let side_at = |at: usize| match self.text(at) {
             "left" => Some(LaneWord::Left),
             "right" => Some(LaneWord::Right),

@@ -69,11 +69,9 @@ fn in_the_same_lane(reading: &Reading<'_>, actor: Actor) -> Option<(LaneWord, us
         return None;
     }
     let changes = reading.did(SUBJECT, Act::LaneChange) || reading.did(actor, Act::LaneChange);
-    let (number, _) = reading.before(actor).find(|(_, frame)| {
-        frame.relations.iter().any(|(relation, to)| *relation == Relation::Same && to.is_none_or(|to| to == SUBJECT))
-    })?;
-    let (first, end) = reading.window(number);
-    let words = &reading.story.tokens[first..end];
+    let (_, number) = known.relations.iter().find(|(relation, _)| *relation == Relation::Same)?;
+    let sentence = reading.story.sentences[*number];
+    let (first, words) = (sentence.first, &reading.story.tokens[sentence.first..sentence.end]);
     let at = words.windows(2).position(|pair| pair[0].text == "same" && pair[1].text == "lane")?;
     (!changes).then_some((own, first + at, first + at + 2))
 }

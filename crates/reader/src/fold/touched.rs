@@ -33,6 +33,9 @@ pub(super) fn zones(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<ContactZone
             frame.with.as_ref()
         } else if frame.object == Some(actor) || (frame.object.is_none() && actor == SUBJECT) {
             frame.on.as_ref()
+        // "The two made contact, left side to left side."
+        } else if pair == [None, None] {
+            frame.with.as_ref()
         } else {
             None
         };

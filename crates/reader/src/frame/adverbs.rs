@@ -267,9 +267,11 @@ fn pulls_out_to_a_lane(frames: &[Frame], number: usize, tokens: &[Token], senten
     let Some(before) = frames[..number].iter().rposition(|before| own(&before)) else { return false };
     let stood = matches!(frames[before].act(), Some(Act::Stop | Act::Hold)) && frames[before].happened();
     let parked = frames[..number].iter().any(|before| before.who == frame.who && before.sense == Sense::Parked);
-    let placed =
-        frames[before].relations.iter().any(|(relation, _)| matches!(relation, Relation::Behind | Relation::Ahead))
-            || text(frames[before].first, frames[before].end + 5).any(|word| word == "lane");
+    let placed = frames[before].relations.iter().any(|(relation, _)| matches!(relation, Relation::Behind | Relation::Ahead))
+            || text(frames[before].first, frames[before].end + 5).any(|word| word == "lane")
+            // "Directly to its rear a coupe had been stopped".
+            || text(sentences[frames[before].sentence].first, frames[before].first)
+                .any(|word| matches!(word, "behind" | "rear"));
     let begin = sentences[frames[before].sentence].first;
     let from_aside = text(begin, frame.first.max(begin)).any(aside) || behind.iter().any(|word| aside(word));
     lane && stood && placed && !parked && !from_aside

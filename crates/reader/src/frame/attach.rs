@@ -21,6 +21,15 @@ impl Parser<'_> {
         if touches && self.frames[frame].on.is_none() {
             self.frames[frame].on = Some(piece.clone());
             self.frames[frame].end = placed.end;
+            // "made contact, left side to left side".
+            let words =
+                |from: usize, to: usize| self.tokens.get(from..to).unwrap_or_default().iter().map(|token| &token.text);
+            let (to, long) = (placed.end, placed.end - placed.first);
+            let both = self.tokens.get(to).is_some_and(|next| matches!(next.text.as_str(), "to" | "against"))
+                && words(to + 1, to + 1 + long).eq(words(placed.first, placed.end));
+            if both && piece.side().is_some() && self.frames[frame].with.is_none() {
+                self.frames[frame].with = Some(piece.clone());
+            }
         }
         // "was hit on its left side, at the rear bumper": where on that side.
         let near = touches && placed.first <= self.frames[frame].end + END_WITHIN;
@@ -77,7 +86,8 @@ impl Parser<'_> {
         } else if let Some(subject) = &carry.subject {
             who = Some(subject.actor);
         } else if carry.main.is_none() && to.is_none_or(|to| to == SUBJECT) {
-            carry.lead = Some(relation);
+            // "To its right and behind it, a van": beside it first.
+            carry.lead.get_or_insert(relation);
         }
         let Some(who) = who else { return };
         // "approached the car from behind": behind the car.
@@ -520,10 +530,15 @@ impl Parser<'_> {
         carry.to = false;
         // "nudged toward the shoulder", "in the direction of the shoulder": not there.
         let toward = matches!(preposition, Some("toward" | "towards"))
-            || self.tokens[placed.first.saturating_sub(3)..placed.first]
+            || self.tokens[placed.first.saturating_sub(4)..placed.first]
                 .windows(2)
                 .any(|pair| pair[0].text == "direction" && pair[1].text == "of");
-        if toward && lane == LaneWord::Shoulder || self.is_lane_of_others(placed.first) || self.is_astride(placed) {
+        let over = carry.frame.and_then(|frame| self.frames[frame].act());
+        let moves = matches!(over, Some(Act::LaneChange | Act::Drift | Act::Swerve | Act::Enter));
+        if toward && (lane == LaneWord::Shoulder || !moves)
+            || self.is_lane_of_others(placed.first)
+            || self.is_astride(placed)
+        {
             return;
         }
         // "passed it in order to reach the left turn lane": not there yet.

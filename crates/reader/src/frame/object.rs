@@ -30,7 +30,9 @@ impl Parser<'_> {
             "into" | "against" => self.into(frame, preposition, mention, placed, carry),
             "off" if !self.frames[frame].is_contact() => {}
             // "came out from behind a van", "from between two vans".
-            "behind" | "between" if matches!(self.frames[frame].act(), Some(Act::Enter | Act::Cross)) => {
+            "behind" | "between"
+                if matches!(self.frames[frame].act(), Some(Act::Enter | Act::Cross | Act::PullOut)) =>
+            {
                 self.frames[frame].object.get_or_insert(mention.actor);
             }
             "onto" | "with" | "between" | "and" | "upon" | "on" | "at" | "along" | "near" | "to" | "off" => {
