@@ -203,6 +203,19 @@ fn opens_behind_abbreviation(word: &str) -> bool {
         )
 }
 
+/// Whether this full stop is the last of "a.m." or "p.m.".
+fn is_clock(tokens: &[Token], at: usize) -> bool {
+    let Some(first) = at.checked_sub(3) else { return false };
+    let word = |ahead: usize| tokens[first + ahead].text.as_str();
+    matches!(word(0), "a" | "p") && word(1) == "." && word(2) == "m" && tokens[first].end == tokens[first + 1].start
+}
+
+/// Time zones, which follow a time of day.
+const ZONES: [&str; 20] = [
+    "pt", "et", "ct", "mt", "pst", "pdt", "est", "edt", "cst", "cdt", "mst", "mdt", "hst", "pacific", "eastern",
+    "central", "mountain", "local", "arizona", "utc",
+];
+
 /// "at 12:14 PM CT. Facing north": a time zone is no court.
 fn is_of_time(tokens: &[Token], at: usize) -> bool {
     at.checked_sub(1).is_some_and(|before| {
@@ -234,6 +247,10 @@ fn ends_sentence(tokens: &[Token], at: usize) -> bool {
             let Some(after) = tokens.get(at + 1) else { return true };
             if after.text == "," {
                 return false;
+            }
+            // "at 5:44 p.m. on May 3", "at 5:44 p.m. Pacific time".
+            if is_clock(tokens, at) {
+                return after.capital && !ZONES.contains(&after.text.as_str());
             }
             let initial = before.text.chars().count() == 1 && before.capital && before.kind == TokenKind::Word;
             let abbreviated = ABBREVIATIONS.contains(&before.text.as_str());

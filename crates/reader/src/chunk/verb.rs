@@ -187,7 +187,9 @@ impl Candidate<'_> {
 
     /// "in a parking lot", "a parking space".
     fn is_a_parking_place(&self) -> bool {
-        self.word(0) == "parking" && self.chunker.spot(self.at).is_some()
+        // "an area designated for parking".
+        let designated = self.word_before == "for" && self.is_single();
+        self.word(0) == "parking" && (designated || self.chunker.spot(self.at).is_some())
     }
 
     /// "its rear parking sensor", "in a parallel parking space", "from a parked position".
@@ -427,7 +429,18 @@ impl Chunker<'_> {
         GOES.iter().any(|stem| self.text(at).starts_with(stem))
             && matches!(
                 self.text(behind),
-                "to" | "toward" | "towards" | "over" | "in" | "into" | "onto" | "on" | "out" | "from" | "and" | "for"
+                "to" | "toward"
+                    | "towards"
+                    | "over"
+                    | "in"
+                    | "into"
+                    | "onto"
+                    | "on"
+                    | "out"
+                    | "from"
+                    | "and"
+                    | "for"
+                    | "inside"
             )
     }
 

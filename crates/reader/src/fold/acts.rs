@@ -3,7 +3,7 @@
 use super::Reading;
 use super::across::{begins, is_behind_begin};
 use super::lanes::{comes_onto_a_lane, enters_a_lane, is_about_to_merge, waits_to_change};
-use super::sides::{back_to_the_middle, side_of};
+use super::sides::{back_to_the_middle, lane_entered, side_of};
 use super::speeds::is_of_last_contact;
 use super::{entry, flashback, nominal};
 use crate::chunk::{Joint, Spot};
@@ -348,7 +348,14 @@ fn act_of(reading: &Reading<'_>, number: usize, frame: &Frame, pushed: bool) -> 
         return Some(Act::Slow);
     }
     let act = frame.act()?;
-    if act == Act::Follow && is_told_again(reading, number, frame) {
+    if act == Act::Follow && (is_told_again(reading, number, frame) || is_of_a_lane(reading, frame)) {
+        return None;
+    }
+    // "turned left, entering the leftmost lane": with the turn.
+    if act == Act::Enter
+        && lane_entered(reading, frame).is_some()
+        && moved_in_sentence(reading, number) == Some(Act::Turn)
+    {
         return None;
     }
     if act == Act::LaneChange && is_about_to_merge(reading, number, frame) || waits_to_change(reading, number, frame) {
@@ -400,6 +407,22 @@ fn act_of(reading: &Reading<'_>, number: usize, frame: &Frame, pushed: bool) -> 
         Act::Pass if passes_nobody(reading, frame) => Act::Follow,
         act => act,
     })
+}
+
+/// "into the lane in which it was driving": where, and nothing that it does then.
+fn is_of_a_lane(reading: &Reading<'_>, frame: &Frame) -> bool {
+    let tokens = &reading.story.tokens;
+    let from = reading.story.sentences[frame.sentence].first.max(frame.first.saturating_sub(7));
+    let words: Vec<&str> = tokens[from..frame.first].iter().map(|token| token.text.as_str()).collect();
+    words.windows(3).any(|run| run == ["lane", "in", "which"]) && frame.form == Form::Ing
+}
+
+/// What somebody did last before a frame, in the same sentence.
+fn moved_in_sentence(reading: &Reading<'_>, number: usize) -> Option<Act> {
+    let frame = &reading.story.frames[number];
+    let own = |other: &&Frame| other.who == frame.who && other.act().is_some() && other.happened();
+    let before = reading.story.frames[..number].iter().rev().take_while(|other| other.sentence == frame.sentence);
+    before.filter(own).find_map(Frame::act)
 }
 
 /// "It proceeded a little and stopped. While it was proceeding, a van behind it did so too": what it did before it stopped.
@@ -626,7 +649,7 @@ pub(super) fn not_done(reading: &Reading<'_>, number: usize, frame: &Frame) -> O
     }
     let (first, end) = reading.window(number);
     let named = Lexicon::get().features(&reading.story.tokens[first..end]);
-    if named.iter().any(|(feature, ..)| *feature == RoadFeature::StopSign) {
+    if named.iter().any(|(feature, ..)| *feature == RoadFeature::StopSign) || goes_past_a_sign(reading, frame) {
         Some(Act::RunStop)
     } else if named.iter().any(|(feature, ..)| *feature == RoadFeature::Signal)
         || drives_in_at_red(reading, number, frame)
@@ -637,6 +660,15 @@ pub(super) fn not_done(reading: &Reading<'_>, number: usize, frame: &Frame) -> O
     } else {
         None
     }
+}
+
+/// "came past a stop sign without stopping".
+fn goes_past_a_sign(reading: &Reading<'_>, frame: &Frame) -> bool {
+    let from = reading.story.sentences[frame.sentence].first.max(frame.first.saturating_sub(7));
+    let words: Vec<&str> = reading.story.tokens[from..frame.first].iter().map(|token| token.text.as_str()).collect();
+    let past =
+        words.windows(4).any(|run| matches!(run, ["past" | "through" | "by", "a" | "the" | "its", "stop", "sign"]));
+    frame.act() == Some(Act::Stop) && past && words.last() == Some(&"without")
 }
 
 /// "Facing a red signal, it failed to stop and drove into the intersection": the light is told before.

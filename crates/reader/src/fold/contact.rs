@@ -48,14 +48,20 @@ impl Contacts {
                     .all(|told| told.sentence == frames[first].sentence || told.who != Some(partner));
                 [frame.who, frame.object].contains(&Some(other)) && (!story.world.actors[other].another || only)
             };
-            let again = touching.iter().find(|(number, other)| {
-                let frame = &frames[*number];
-                frames[first].sentence == early
-                    && frame.sentence > early
-                    && !shoved(story, frame)
-                    && (*other == partner || story.world.actors[*other].mentions > 1 || names(frame, *other))
-                    && alike(story, partner, *other)
-            });
+            // "The collision took place on Elm Street" says where, and tells nothing else.
+            let bare = |frame: &Frame| {
+                frame.sense == Sense::ContactMade && frame.who.is_none() && frame.object.is_none() && frame.on.is_none()
+            };
+            let fuller = touching.iter().filter(|(number, _)| !bare(&frames[*number]));
+            let again =
+                fuller.chain(touching.iter().filter(|(number, _)| bare(&frames[*number]))).find(|(number, other)| {
+                    let frame = &frames[*number];
+                    frames[first].sentence == early
+                        && frame.sentence > early
+                        && !shoved(story, frame)
+                        && (*other == partner || story.world.actors[*other].mentions > 1 || names(frame, *other))
+                        && alike(story, partner, *other)
+                });
             // "... struck it from behind. It then struck the left side": two events, no headline.
             let told = &frames[first];
             let full = told.on.is_some() || told.with.is_some() || !told.relations.is_empty();

@@ -86,7 +86,7 @@ pub(super) fn controls(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<Control>
         }
     }
     if actor == SUBJECT {
-        of_that_queue(reading, &mut all);
+        of_that_queue(reading, &mut all, turned_green.map(|(state, ..)| state));
         if turned_green.is_none() {
             told_alone(reading, &mut all);
         }
@@ -128,7 +128,7 @@ fn of_the_contact(reading: &Reading<'_>, number: usize, end: usize) -> usize {
 }
 
 /// "Traffic had queued at a red light, and the AV was standing in that line": the light of the line is its own.
-fn of_that_queue(reading: &Reading<'_>, all: &mut Vec<Fact<Control>>) {
+fn of_that_queue(reading: &Reading<'_>, all: &mut Vec<Fact<Control>>, turned: Option<SignalState>) {
     let tokens = &reading.story.tokens;
     let word = |at: usize| tokens.get(at).map_or("", |token| token.text.as_str());
     let line = |at: &usize| {
@@ -148,6 +148,7 @@ fn of_that_queue(reading: &Reading<'_>, all: &mut Vec<Fact<Control>>) {
         if let (true, Some((at, device, state, length))) = (queued, light)
             && all.iter().all(|known| known.value.device != device)
         {
+            let state = turned.filter(|_| device == ControlDevice::Signal).or(state);
             all.push(reading.told(Control { device, state, obeyed: Some(Obeyed::Yes) }, at, at + length));
         }
     }
@@ -294,6 +295,7 @@ fn named(words: &[&str]) -> Option<(ControlDevice, Option<SignalState>, usize)> 
         {
             (ControlDevice::Signal, None, 3)
         }
+        ["stop", "at" | "for", "the", "sign", ..] => (ControlDevice::StopSign, None, 4),
         ["stop" | "sign", "controlled", ..] => (ControlDevice::StopSign, None, 2),
         ["stop", "sign" | "signs", ..] => (ControlDevice::StopSign, None, 2),
         ["four" | "4" | "three" | "3" | "all", "way", "stop", ..] => (ControlDevice::StopSign, None, 3),

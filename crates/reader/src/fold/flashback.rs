@@ -44,7 +44,7 @@ pub(super) fn in_order(reading: &Reading<'_>, actor: Actor) -> (Vec<usize>, Opti
     let last = |number: &usize| actor == SUBJECT && is_state_at_crash(reading, *number);
     let touches = |number: &usize| reading.story.frames[*number].is_contact() && !reading.is_after(*number);
     let (at_crash, mut order): (Vec<usize>, Vec<usize>) = all.clone().partition(last);
-    order.retain(|number| !is_told_once_more(reading, *number));
+    order.retain(|number| !is_told_once_more(reading, *number) && !is_where_it_operates(reading, *number));
     let contact = all.rev().find(touches).filter(|_| !at_crash.is_empty());
     // What came of it stays behind.
     let after = order.iter().position(|number| reading.is_after(*number)).unwrap_or(order.len());
@@ -90,6 +90,22 @@ fn goes_behind(reading: &Reading<'_>, frame: &Frame, words: &[&str]) -> bool {
 fn tells_the_crash(reading: &Reading<'_>, sentence: usize) -> bool {
     let touches = |frame: &Frame| frame.is_contact() && [frame.who, frame.object].contains(&Some(SUBJECT));
     reading.story.frames.iter().any(|frame| frame.sentence == sentence && touches(frame))
+}
+
+/// "An AV operating in Oakland was hit by a van. It stood at a light": of the headline, where it is in service.
+fn is_where_it_operates(reading: &Reading<'_>, number: usize) -> bool {
+    let frame = &reading.story.frames[number];
+    let words = &reading.story.tokens[frame.first..(frame.first + 3).min(reading.story.tokens.len())];
+    let operates =
+        words[0].text == "operating" && words.iter().any(|token| token.text == "in") && frame.form == Form::Ing;
+    let later = |(_, other): (usize, &Frame)| {
+        other.sentence > frame.sentence && !other.aside && other.happened() && other.act().is_some()
+    };
+    frame.who == Some(SUBJECT)
+        && operates
+        && words.last().is_some_and(|token| token.capital)
+        && tells_the_crash(reading, frame.sentence)
+        && reading.before(SUBJECT).any(later)
 }
 
 /// "It rolled back into a coupe. It was parked on a hill. It rolled back until it met the coupe": the headline tells an act that the story
@@ -285,10 +301,11 @@ fn was_under_way(story: &Story, sentence: usize) -> bool {
     };
     let was = |at: usize| matches!(story.tokens[at].text.as_str(), "was" | "were");
     let bound = (words.first + 1..words.end).any(|at| was(at - 1) && story.tokens[at].text.ends_with("bound"));
-    let stood = first.act() == Some(Act::Hold) && was(first.first);
+    let stands = |at: usize| was(at) || matches!(story.tokens[at].text.as_str(), "stood" | "sat");
+    let stood = first.act() == Some(Act::Hold) && stands(first.first);
     let going = (first.form == Form::Ing || stood)
         && first.act().is_some_and(|act| act != Act::Leave)
-        && (first.first.saturating_sub(2).max(words.first)..=first.first).any(was);
+        && (first.first.saturating_sub(2).max(words.first)..=first.first).any(|at| was(at) || stood && stands(at));
     first.happened() && (bound || going)
 }
 

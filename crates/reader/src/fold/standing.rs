@@ -154,6 +154,17 @@ impl Told {
             {
                 return None;
             }
+            // "kept backing and started to turn into a space": backwards.
+            Act::Turn
+                if self.state() == Some(ContactState::Reversing)
+                    && self.since.is_some_and(|(sentence, _)| sentence == frame.sentence)
+                    && text
+                        .split('.')
+                        .next()
+                        .is_some_and(|clause| clause.contains("parking") || clause.contains("space")) =>
+            {
+                return None;
+            }
             // "An SUV reversing along the kerb approached".
             Act::Follow
                 if self.state() == Some(ContactState::Reversing)
@@ -250,7 +261,7 @@ pub(super) fn reasons(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<StandReas
     let lexicon = Lexicon::get();
     let stands = |frame: &Frame| {
         matches!(frame.act(), Some(Act::Hold | Act::Stop | Act::Slow | Act::PullOver))
-            || frame.act() == Some(Act::Park) && frame.happened()
+            || frame.act() == Some(Act::Park) && frame.progress == Progress::Real
             || matches!(frame.sense, Sense::Yield | Sense::Parked)
     };
     let mut all: Vec<Fact<StandReason>> = Vec::new();

@@ -320,12 +320,16 @@ fn against_traffic(frame: &Frame, words: &[&str]) -> bool {
 
 /// "entered the crosswalk at a run against the pedestrian signal".
 fn against_signal(words: &[&str]) -> bool {
-    words.iter().enumerate().any(|(at, word)| {
-        let next = &words[at + 1..words.len().min(at + 5)];
-        *word == "against"
-            && !next.contains(&"pole")
-            && next.iter().any(|word| matches!(*word, "signal" | "signals" | "red" | "hand"))
-    })
+    // "came in on red", and not "turned right on red".
+    let turns = words.first().is_some_and(|word| ["turn", "ma", "took"].iter().any(|stem| word.starts_with(stem)));
+    let on_red = words.windows(2).any(|pair| pair == ["on", "red"]) && !turns;
+    on_red
+        || words.iter().enumerate().any(|(at, word)| {
+            let next = &words[at + 1..words.len().min(at + 5)];
+            *word == "against"
+                && !next.contains(&"pole")
+                && next.iter().any(|word| matches!(*word, "signal" | "signals" | "red" | "hand"))
+        })
 }
 
 /// "A coupe whose light was red drove in", "in violation of the red light, it drove in".

@@ -202,7 +202,13 @@ fn hold_by_hand(tokens: &mut [Token]) {
                 "held" | "handheld" | "holding" | "holds" | "waving" | "carrying" | "wielding"
             )
         });
-        let paddle = tokens.get(at + 2).is_some_and(|next| next.text == "paddle");
+        let word = |ahead: usize| tokens.get(at + ahead).map_or("", |token| token.text.as_str());
+        // "with a stop sign in hand", "raised a stop sign".
+        let in_hand = word(2) == "in" && (word(3) == "hand" || matches!(word(3), "his" | "her") && word(4) == "hand");
+        let raised = tokens[at.saturating_sub(2)..at]
+            .iter()
+            .any(|token| matches!(token.text.as_str(), "raised" | "raising" | "showed"));
+        let paddle = word(2) == "paddle" || in_hand || raised;
         if held || paddle {
             for (token, name) in tokens[at..].iter_mut().zip(["signal", "paddle"]) {
                 name.clone_into(&mut token.text);

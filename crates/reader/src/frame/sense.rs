@@ -12,7 +12,7 @@ use recrash_model::account::{Act, Compass, KindGroup, LeftRight};
 
 type Rule = fn(&Parser<'_>, &Spoken<'_>, &Carry) -> Option<Sense>;
 
-const SENSES: [Rule; 41] = [
+const SENSES: [Rule; 42] = [
     goes_down_a_road,
     is_operated_by,
     goes_through_no_junction,
@@ -54,6 +54,7 @@ const SENSES: [Rule; 41] = [
     slides_over,
     comes_along,
     goes_over_the_bars,
+    is_of_an_alley,
 ];
 
 impl Parser<'_> {
@@ -614,6 +615,21 @@ fn comes_along(parser: &Parser<'_>, verb: &Spoken<'_>, carry: &Carry) -> Option<
     });
     let rolls = verb.sense == Sense::Act(Act::Roll) && matches!(verb.next(), Some(Chunk::Compass(_)));
     (acts && (down && way || rolls && single(verb.placed()))).then_some(Sense::Act(Act::Follow))
+}
+
+/// "an alley running between two streets": a road does not drive.
+fn is_of_an_alley(parser: &Parser<'_>, verb: &Spoken<'_>, _carry: &Carry) -> Option<Sense> {
+    let before = verb.placed().first.checked_sub(1).map_or("", |at| parser.tokens[at].text.as_str());
+    let road =
+        matches!(before, "alley" | "alleyway" | "street" | "road" | "roadway" | "lane" | "path" | "driveway" | "track");
+    let runs = matches!(verb.word(parser), "running" | "leading" | "going" | "heading");
+    let way = matches!(verb.next(), Some(Chunk::Preposition(_) | Chunk::Compass(_) | Chunk::Relation(_) | Chunk::Word));
+    (road && runs && way && verb.sense == Sense::Act(Act::Follow) && !carry_is_of(verb)).then_some(Sense::Other)
+}
+
+/// Whether a comma or a verb of being stands right before a verb.
+fn carry_is_of(verb: &Spoken<'_>) -> bool {
+    matches!(verb.chunk_before(), Some(Chunk::Comma | Chunk::Be | Chunk::Joint(_)))
 }
 
 /// "went over the handlebars".

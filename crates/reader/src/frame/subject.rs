@@ -47,10 +47,15 @@ impl Parser<'_> {
     pub(super) fn side_in(&self, placed: &Placed) -> Option<LeftRight> {
         // "left its stall" is no side.
         let leaves = usize::from(self.tokens[placed.first].text == "left");
-        self.tokens[placed.first + leaves..placed.end].iter().find_map(|token| match token.text.as_str() {
-            "left" | "leftmost" => Some(LeftRight::Left),
-            "right" | "rightmost" => Some(LeftRight::Right),
-            _ => None,
+        // "pulled away from the right curb" is away from that side.
+        let of_curb =
+            |at: usize| self.tokens.get(at + 1).is_some_and(|next| matches!(next.text.as_str(), "curb" | "curbside"));
+        (placed.first + leaves..placed.end).filter(|at| !of_curb(*at)).find_map(|at| {
+            match self.tokens[at].text.as_str() {
+                "left" | "leftmost" => Some(LeftRight::Left),
+                "right" | "rightmost" => Some(LeftRight::Right),
+                _ => None,
+            }
         })
     }
 

@@ -358,14 +358,16 @@ impl Parser<'_> {
         carry.frame = Some(number);
         (carry.fresh, carry.governed, carry.row, carry.negated) = (false, false, false, false);
         (carry.preposition, carry.relation) = (None, None);
-        // "an opening to change lanes and get round": both are meant.
+        // "an opening to change lanes and get round", "to move left and get by": both are meant.
         let wished = self.frames[number].progress == Progress::Wished && verb.form == Form::Base;
-        let both =
-            wished && matches!(verb.all.get(verb.at + 2).map(|next| &next.chunk), Some(Chunk::Verb(_, Form::Base)));
-        if both && carry.progress.is_none() && matches!(verb.next(), Some(Chunk::Joint(Joint::And))) {
+        let side = |placed: &&Placed| matches!(placed.chunk, Chunk::Side(_) | Chunk::Word);
+        let skipped = verb.all[verb.at + 1..].iter().take(3).take_while(side).count();
+        let next = |ahead: usize| verb.all.get(verb.at + 1 + skipped + ahead).map(|placed| &placed.chunk);
+        let both = matches!((next(0), next(1)), (Some(Chunk::Joint(Joint::And)), Some(Chunk::Verb(_, Form::Base))));
+        if wished && both && carry.progress.is_none() {
             carry.progress = Some(Progress::Wished);
         }
-        let row = carry.progress.is_some() && matches!(verb.next(), Some(Chunk::Joint(Joint::And)));
+        let row = carry.progress.is_some() && (matches!(verb.next(), Some(Chunk::Joint(Joint::And))) || wished && both);
         if !(leads || row) {
             carry.progress = None;
         }
