@@ -4,6 +4,7 @@ use crate::reading::order::steps;
 use crate::reading::words::text;
 use crate::told::crash::Told;
 use crate::told::doing::Doing;
+use crate::told::phase::Phase;
 use crate::told::side::{Side, Slant, Turning};
 use crate::told::zones::side_of;
 use recrash_model::account::{
@@ -153,8 +154,11 @@ impl Told {
 
     /// Whether the partner is told to have been behind an ego that stood and set off, and nothing tells that it came up to it.
     pub(super) fn was_in_queue(&self, account: &Account, partner: &Party) -> bool {
+        // Also one that moved up a little, and stands again.
+        let moved_up = self.sv.phases.ends_with(&[Phase::Stands, Phase::Drives, Phase::Stands]);
         let went = self.sv.state == ContactState::SettingOff
-            || self.sv.state == ContactState::Moving && self.sv.stood_first && self.sv.turning == Turning::No;
+            || self.sv.state == ContactState::Moving && self.sv.stood_first && self.sv.turning == Turning::No
+            || self.sv.state == ContactState::Stopped && moved_up && self.sv.turning == Turning::No;
         let plain = self.cp.state == ContactState::Moving && !self.cp.stood_first && self.cp.turning == Turning::No;
         let straight = matches!(self.cp.movement, None | Some(Movement::Straight)) && self.cp.manner.is_none();
         let words = |source: &Source| match source {
@@ -171,8 +175,8 @@ impl Told {
             && straight
             && !self.pushed
             && only_there
-            && place.contains("behind")
-            && !comes(&place)
+            && ["behind", "trailing", "following"].iter().any(|word| place.contains(word))
+            && !["approach", "from behind", "came up", "coming up"].iter().any(|word| place.contains(word))
     }
 
     /// "Was maneuvering around the parked truck": out of its line, away from the touched side where no other is told.

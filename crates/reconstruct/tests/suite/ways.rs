@@ -139,6 +139,25 @@ fn who_stood_behind_an_ego_that_moved_up_moves_up_too() {
 }
 
 #[test]
+fn who_is_told_behind_an_ego_that_moved_up_was_there_unless_it_came() {
+    let begins = |told: &str| {
+        let text = format!(
+            "The AV was stopped at a red light. The AV proceeded forward a short distance and came to a stop. {told}"
+        );
+        let shown = made(&story(&text));
+        let behind_m = shown.rollout.ego_track().states[0].x - partner(&shown).0[0].x;
+        (behind_m, partner(&shown).0[0].speed())
+    };
+    let there = begins(
+        "The van behind the AV proceeded forward as well, but did not stop when the AV came to a stop, and its front made contact with the rear of the AV.",
+    );
+    assert!(there.0 < 12.0 && there.1 == 0.0, "{there:?}");
+    let came =
+        begins("A van approached the AV from behind, and the front of the van made contact with the rear of the AV.");
+    assert!(came.0 > 20.0 && came.1 > 1.0, "{came:?}");
+}
+
+#[test]
 fn an_ego_that_reversed_before_it_stood_reverses() {
     let account = story(REVERSED_FIRST);
     let shown = made(&account);
