@@ -12,8 +12,10 @@ const TEXT: &str = include_str!("../data/lexicon.toml");
 const GAP: usize = 3;
 
 /// Words that a `*` never stands for.
-const NO_GAP: [&str; 13] =
-    ["with", "contact", "and", "by", "when", "as", "while", "before", "after", "but", "then", "from", "u"];
+const NO_GAP: [&str; 17] = [
+    "with", "contact", "and", "by", "when", "as", "while", "before", "after", "but", "then", "from", "u", "it", "they",
+    "he", "she",
+];
 
 /// What a verb says.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

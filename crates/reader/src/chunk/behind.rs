@@ -95,7 +95,18 @@ impl Chunker<'_> {
         let behind = at + if self.text(at) == "(" { self.parenthesis(at) } else { 0 };
         if matches!(
             self.text(behind),
-            "of" | "in" | "inside" | "from" | "operating" | "driving" | "on" | "within" | "aboard"
+            "of" | "in"
+                | "inside"
+                | "from"
+                | "operating"
+                | "driving"
+                | "on"
+                | "within"
+                | "aboard"
+                | "exiting"
+                | "leaving"
+                | "entering"
+                | "boarding"
         ) && let Some((owner, length)) = self.noun(behind + 1)
             && (owner.subject || owner.kind.is_some_and(can_own))
             && owner.occupant.is_none()

@@ -105,6 +105,11 @@ impl Piece {
         }
     }
 
+    /// A door of which no more is said.
+    pub(crate) fn a_door() -> Self {
+        Self { door: true, ..Self::of(Part::Noun) }
+    }
+
     /// A part of which no more is said than on which side it is.
     pub(crate) fn of(part: Part) -> Self {
         Self { parts: vec![part], door: false, mirror: false, open: false, owner: None, its: false }

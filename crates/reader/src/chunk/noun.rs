@@ -704,7 +704,11 @@ impl Chunker<'_> {
         let (meaning, length) = self.head(draft.at)?;
         let noun = &draft.noun;
         let no_more = self.text(draft.at) == "'s"
-            || matches!(meaning, Meaning::Subject) && noun.kind.is_some() && !draft.subject
+            // "a Prius test vehicle" is the subject vehicle.
+            || matches!(meaning, Meaning::Subject)
+                && noun.kind.is_some()
+                && !draft.subject
+                && !(self.lexicon.is_model(self.text(draft.at - 1)) && self.text(draft.at) == "test")
             || matches!(meaning, Meaning::Kind(kind) if noun.occupant.is_some() && !kind.is_vehicle());
         (!no_more).then_some((meaning, length))
     }

@@ -564,7 +564,9 @@ impl Parser<'_> {
                     let actor = carry.last.as_ref().map_or(SUBJECT, |last| last.actor);
                     self.world.actors[actor].lane.get_or_insert(stands);
                 }
-                None if carry.main.is_none() && matches!(preposition, Some("in" | "within" | "from" | "on")) => {
+                None if carry.main.is_none()
+                    && matches!(preposition, Some("in" | "within" | "from" | "on" | "out")) =>
+                {
                     carry.lead_lane.get_or_insert(stands);
                 }
                 None => {}

@@ -3,7 +3,7 @@
 use super::parser::{Carry, Mention, Parser};
 use super::row::{another_finite, goes_on_behind_comma, relation_behind, transitive};
 use crate::chunk::{Article, Chunk, Joint, Noun, Piece, Placed};
-use crate::lexicon::{Adjective, Form, Relation, Sense};
+use crate::lexicon::{Adjective, Form, Occupant, Relation, Sense};
 use crate::token::number;
 use crate::world::{Actor, SUBJECT};
 use recrash_model::account::{Act, Kind, KindGroup};
@@ -59,7 +59,8 @@ impl Parser<'_> {
             carry.preposition = Some("of");
         }
         // "At this time a van ...": the van is not behind "at".
-        let apart = carry.preposition != Some("to") && self.stands_apart(all, at);
+        let green = at > 0 && crate::chunk::is_colour(&self.tokens[all[at - 1].first].text);
+        let apart = (carry.preposition != Some("to") || green) && self.stands_apart(all, at);
         if (carry.filled || apart) && noun.article != Article::None {
             (carry.preposition, carry.relation) = (None, None);
             // "It opened its door at the moment a van was driving by": the van begins a clause.
@@ -228,7 +229,12 @@ impl Parser<'_> {
             self.tokens[placed.first..placed.end].iter().find(|token| matches!(token.text.as_str(), "its" | "it"));
         if piece.its {
             let word = word.map_or("their", |token| &token.text);
-            return Some(self.part_behind_object(carry).unwrap_or_else(|| self.its(word, carry)));
+            let actor = self.part_behind_object(carry).unwrap_or_else(|| self.its(word, carry));
+            // "As a cyclist rode past it, its rear door was opened": who rides has none.
+            let kind = self.world.actors[actor].kind.filter(|_| piece.door && actor != SUBJECT);
+            let rides =
+                |kind: Kind| matches!(kind.group(), KindGroup::OnFoot | KindGroup::Cyclist | KindGroup::Motorcycle);
+            return Some(if kind.is_some_and(rides) { SUBJECT } else { actor });
         }
         // "The edge of the open door touched": of whom it was opened.
         let door = if piece.door && carry.fresh { self.door_of() } else { None };
@@ -408,7 +414,12 @@ impl Parser<'_> {
         let taken = &mut self.frames[frame];
         // Nobody touches itself: "the van made contact with the van that was turning".
         let itself = taken.sense == Sense::Contact && taken.who == Some(actor) && actor != SUBJECT;
-        let actor = if itself { self.world.other_like(actor).unwrap_or(actor) } else { actor };
+        let like = if itself { self.world.other_like(actor) } else { None };
+        // "A deer leaped into its path. Its front hit the deer": nobody's own front does.
+        if itself && like.is_none() && taken.with.as_ref().is_some_and(|piece| piece.its) {
+            taken.who = Some(SUBJECT);
+        }
+        let actor = like.unwrap_or(actor);
         taken.object = Some(actor);
         taken.on.clone_from(&mention.piece);
         taken.end = placed.end;
@@ -424,6 +435,14 @@ impl Parser<'_> {
             {
                 mention.actor = SUBJECT;
             }
+        }
+        // "a passenger opened the taxi's rear door": a passenger of the taxi.
+        let rider = taken.person == Some(Occupant::Rider) && taken.who == Some(SUBJECT);
+        if rider
+            && taken.sense == Sense::Act(Act::OpenDoor)
+            && taken.on.as_ref().is_some_and(|piece| piece.door && piece.owner.is_some())
+        {
+            taken.who = Some(actor);
         }
         let (sense, who) = (taken.sense, taken.who);
         carry.last = Some(Mention { actor, ..mention });

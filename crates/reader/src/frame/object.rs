@@ -103,6 +103,12 @@ impl Parser<'_> {
             );
         let passed = taken.passive
             && matches!(taken.sense, Sense::Approach | Sense::Act(Act::Follow | Act::Pass | Act::LaneChange));
+        // "The door was opened by a passenger of the van": of the van.
+        if taken.sense == Sense::Act(Act::OpenDoor) && taken.form == Form::Past && mention.person.is_some() {
+            taken.who = Some(mention.actor);
+            carry.subject = Some(Mention { piece: Some(Piece::a_door()), person: None, ..mention.clone() });
+            return;
+        }
         if !done_to && !passed {
             return;
         }

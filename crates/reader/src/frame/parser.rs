@@ -194,7 +194,8 @@ impl Parser<'_> {
         };
         let leads = |frame: &Frame| {
             let told = frame.act().is_some_and(|act| act != Act::Hold) && frame.happened();
-            told && !(frame.aside || frame.described || frame.is_contact())
+            let describes = frame.form == Form::Ing && frame.joint.is_none() && frame.who == Some(other);
+            told && !(frame.aside || frame.described || describes || frame.is_contact())
         };
         let rides = |kind: Kind| {
             kind.is_vehicle()

@@ -275,6 +275,12 @@ impl Parser<'_> {
             last.piece.is_none()
                 && named.is_some_and(|named| named.end == last.end && matches!(named.chunk, Chunk::Noun(_)))
         });
+        // "our test vehicle, a Prius running autonomously".
+        let own = just.is_some_and(|last| last.actor == SUBJECT) && kind.is_vehicle() && !noun.names.is_empty();
+        let describes = matches!(all.get(at + 1).map(|placed| &placed.chunk), Some(Chunk::Verb(_, Form::Ing)));
+        if own && (ends || describes) {
+            return Some(SUBJECT);
+        }
         let goes_on =
             || matches!(all.get(at + 2).map(|placed| &placed.chunk), Some(Chunk::Verb(_, Form::Past) | Chunk::Be));
         let about = carry.subject.as_ref().filter(|_| !carry.has_verb && ends && goes_on());
@@ -446,6 +452,12 @@ pub(super) fn relation_behind(all: &[Placed], at: usize) -> Option<Relation> {
         // "the vehicle next to it".
         (Chunk::Relation(relation), Some(Chunk::Pronoun)) => Some(*relation),
         // "the vehicle trailing the AV".
+        (Chunk::Relative, Some(Chunk::Verb(Sense::Act(Act::Follow), Form::Past)))
+            if matches!(all.get(at + 3).map(|p| &p.chunk), Some(Chunk::Pronoun))
+                || matches!(all.get(at + 3).map(|p| &p.chunk), Some(Chunk::Noun(noun)) if noun.subject) =>
+        {
+            Some(Relation::Behind)
+        }
         (Chunk::Verb(Sense::Act(Act::Follow), Form::Ing), Some(Chunk::Noun(noun)))
             if noun.subject && matches!(&all[at].chunk, Chunk::Noun(named) if named.occupant.is_none()) =>
         {

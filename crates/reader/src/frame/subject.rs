@@ -100,7 +100,9 @@ impl Parser<'_> {
         let ready = if inner { Vec::new() } else { std::mem::take(&mut carry.pending) };
         for pending in ready {
             let waiting = &self.frames[pending];
-            let stands = waiting.state && matches!(waiting.sense, Sense::Act(Act::Hold) | Sense::Parked);
+            // "Stopped behind it, a van set off": nobody stands behind itself.
+            let by_topic = waiting.relations.iter().any(|(_, to)| *to == Some(self.world.topic));
+            let stands = waiting.state && matches!(waiting.sense, Sense::Act(Act::Hold) | Sense::Parked) && !by_topic;
             // "It began to cross. While crossing, a van ...": who did so before.
             let goes_on = waiting.form == Form::Ing
                 && waiting.act().is_some()

@@ -225,7 +225,9 @@ impl Parser<'_> {
         let participle = inner && last && (carry.fresh || carry.governed);
         // "approached a truck stopped in the road": it stood there.
         let of_object = carry.has_verb && last && who != carry.subject.as_ref();
-        let while_so = carry.fresh && carry.joint == Some(Joint::While);
+        // "Stopped in the left lane, it was struck".
+        let fronted = carry.joint.is_none() && who.is_none() && carry.main.is_none() && carry.pending.is_empty();
+        let while_so = carry.fresh && (carry.joint == Some(Joint::While) || fronted && !carry.stranger);
         // "There was a van parked on its right".
         let there = verb.at > 2
             && matches!(verb.all[verb.at - 1].chunk, Chunk::Noun(_))
