@@ -25,6 +25,13 @@ impl Chunker<'_> {
             (noun.owner, noun.occupant, noun.kind) = (Some(Box::new(owner)), Some((Occupant::Rider, false)), None);
             return Some((noun, behind - first));
         }
+        // "a man driving a van", "somebody behind the wheel of a pickup": its driver.
+        if noun.kind == Some(Kind::Pedestrian)
+            && let Some((owner, behind)) = self.driven(at)
+        {
+            (noun.owner, noun.occupant, noun.kind) = (Some(Box::new(owner)), Some((Occupant::Driver, false)), None);
+            return Some((noun, behind - first));
+        }
         let at = self.ride_behind(&mut noun, at);
         if self.text(at) != "'s" {
             return Some((noun, at - first));
@@ -170,6 +177,22 @@ impl Chunker<'_> {
         let vehicle = owner.subject
             || owner.kind.is_some_and(Kind::is_vehicle)
                 && (owner.kind != Some(Kind::Vehicle) || !owner.names.is_empty());
+        (vehicle && owner.occupant.is_none() && !owner.several).then_some((owner, behind + length))
+    }
+
+    /// The vehicle that somebody drives by the words here, and the token behind it.
+    fn driven(&self, at: usize) -> Option<(Noun, usize)> {
+        let mut behind = at;
+        while matches!(self.text(behind), "who" | "that" | "was" | "is" | "sitting") {
+            behind += 1;
+        }
+        behind += match (self.text(behind), self.text(behind + 1), self.text(behind + 2), self.text(behind + 3)) {
+            ("driving" | "operating" | "steering" | "piloting", ..) => 1,
+            ("at" | "behind", "the", "wheel", "of") => 4,
+            _ => return None,
+        };
+        let (owner, length) = self.noun(behind)?;
+        let vehicle = owner.subject || owner.kind.is_some_and(Kind::is_vehicle);
         (vehicle && owner.occupant.is_none() && !owner.several).then_some((owner, behind + length))
     }
 

@@ -463,6 +463,19 @@ impl Chunker<'_> {
         governed || !is_determiner(self.text(next)) && place
     }
 
+    /// "the moment it set off", "at the very instant the van braked": when. "The second van" and "at the time of the crash" are not.
+    fn moment(&self, at: usize) -> Option<usize> {
+        let the = at + usize::from(self.text(at) == "at");
+        let very = usize::from(matches!(self.text(the + 1), "very" | "same" | "exact" | "precise"));
+        let noun = the + 1 + very;
+        let time = matches!(self.text(noun), "moment" | "instant")
+            || self.text(noun) == "second" && the == at
+            || self.text(noun) == "time" && the > at;
+        let behind = noun + 1 + usize::from(matches!(self.text(noun + 1), "that" | "when"));
+        let clause = matches!(self.text(behind), "it" | "they" | "he" | "she" | "the" | "a" | "an" | "our" | "its");
+        (self.text(the) == "the" && time && clause).then_some(behind - at)
+    }
+
     /// "so a van could turn", "so it could turn": what room was made for. ", so the van swerved" is what came of it.
     fn is_purpose(&self, at: usize) -> bool {
         let apart = at > self.first && !matches!(self.text(at - 1), "," | "do" | "did" | "doing" | "done" | "and");
@@ -495,6 +508,7 @@ impl Chunker<'_> {
             "following" if matches!(next, "the" | "this") && at == self.first => (Joint::After, 1),
             "before" | "until" => (Joint::Before, 1),
             "prior" if next == "to" => (Joint::Before, 2),
+            "the" | "at" if self.moment(at).is_some() => (Joint::While, self.moment(at)?),
             "so" if next == "that" => (Joint::Because, 2),
             "so" if self.is_purpose(at) => (Joint::Because, 1),
             "in" if next == "order" && self.text(at + 2) == "that" => (Joint::Because, 3),

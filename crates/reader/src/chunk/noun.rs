@@ -209,7 +209,14 @@ impl Chunker<'_> {
             return Lead::Head(meaning, length);
         }
         // "the slowly moving van".
-        let adverb = self.text(at).ends_with("ly") || matches!(self.text(at), "then" | "still" | "now");
+        let adverb = self.text(at).ends_with("ly")
+            || matches!(self.text(at), "then" | "still" | "now" | "already" | "just" | "almost");
+        // "a by then stopped van".
+        if self.text(at) == "by" && matches!(self.text(at + 1), "then" | "now") && determined && self.adjective(at + 2)
+        {
+            draft.at += 2;
+            return Lead::On;
+        }
         let intensifies = adverb && determined && self.adjective(at + 1);
         if self.joins_adjectives(at, &draft.noun) || intensifies {
             draft.at += 1;

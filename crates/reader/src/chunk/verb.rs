@@ -223,8 +223,16 @@ impl Candidate<'_> {
 
     /// "the driving lane".
     fn is_of_a_lane(&self) -> bool {
-        matches!(self.word(0), "traveling" | "driving" | "turning" | "merging")
-            && matches!(self.word(1), "lane" | "lanes")
+        // "in autonomous driving mode", "its driving system".
+        let system = self.word(0) == "driving"
+            && self.is_single()
+            && matches!(
+                self.word(1),
+                "mode" | "system" | "systems" | "task" | "tasks" | "function" | "software" | "stack"
+            );
+        system
+            || matches!(self.word(0), "traveling" | "driving" | "turning" | "merging")
+                && matches!(self.word(1), "lane" | "lanes")
     }
 
     /// "it moved back into its lane", "back pain".

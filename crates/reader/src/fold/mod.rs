@@ -127,7 +127,9 @@ impl Reading<'_> {
         let simultaneous = frame.sentence == at.sentence
             && frame.joint == Some(crate::chunk::Joint::While)
             && frame.clause > at.clause
-            && self.story.tokens[between].iter().any(|token| matches!(token.text.as_str(), "while" | "as" | "when"))
+            && self.story.tokens[between].iter().any(|token| {
+                matches!(token.text.as_str(), "while" | "as" | "when" | "moment" | "instant" | "second" | "time")
+            })
             && !self.is_of_a_sequel(number, contact);
         // "It hit a tire, which then went under it".
         let goes_on = frame.first > 0 && self.story.tokens[frame.first - 1].text == "then" && number > contact;

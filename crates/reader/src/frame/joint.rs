@@ -87,6 +87,7 @@ impl Parser<'_> {
             carry.subject = Some(mention);
         }
         self.leave_place(carry, false);
+        carry.reduced = false;
         carry.clause += 1;
         (carry.preposition, carry.relation, carry.be, carry.to) = (None, None, false, false);
         if joint != Joint::And || !matches!(next, Some(Chunk::Verb(..) | Chunk::Not | Chunk::Be)) {
@@ -266,6 +267,9 @@ impl Parser<'_> {
         if let Some(last) = carry.last.clone() {
             let last = if self.tokens[all[at].first].text == "who" { self.person_of(last) } else { last };
             let last = self.placed_by_it(all, at, carry).unwrap_or(last);
+            let once_more = at > 0 && matches!(all[at - 1].chunk, Chunk::Joint(Joint::And));
+            let last = carry.antecedent.take().filter(|_| once_more).unwrap_or(last);
+            carry.antecedent = Some(last.clone());
             if !carry.relative {
                 carry.outer = carry.subject.clone().filter(|_| !carry.has_verb);
             }

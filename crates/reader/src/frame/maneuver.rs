@@ -13,13 +13,14 @@ enum Does {
     Park,
     Stop,
     Swerve,
+    UTurn,
 }
 
 /// A noun of a manoeuvre.
 struct Named {
     does: Does,
     side: Option<&'static str>,
-    /// "a change of lanes".
+    /// "a change of lanes", "a left": what the lexicon does not know.
     of_lanes: bool,
     /// The token behind it.
     end: usize,
@@ -101,10 +102,11 @@ fn does(tokens: &[Token], at: usize) -> Option<(usize, &'static str, bool)> {
 fn is_unknown(verb: &str, named: &Named, begins: bool) -> bool {
     let rare = ["undert", "effect", "conduct", "carr"].iter().any(|stem| verb.starts_with(stem));
     match named.does {
-        Does::Turn => rare || verb.starts_with("commenc"),
+        Does::Turn => rare || verb.starts_with("commenc") || named.of_lanes && (begins || verb.starts_with("exec")),
         Does::ChangeLanes => rare || verb.starts_with("commenc") || named.of_lanes,
         Does::Stop => !begins,
         Does::Reverse | Does::Pass | Does::Park | Does::Swerve => true,
+        Does::UTurn => rare || begins,
     }
 }
 
@@ -131,6 +133,9 @@ fn named(tokens: &[Token], from: usize) -> Option<Named> {
     if !matches!(word(from), "a" | "an" | "the" | "its" | "his" | "her" | "their") {
         return None;
     }
+    if let Some(named) = ellipsis(tokens, from) {
+        return Some(named);
+    }
     let noun = (from + 1..from + WORDS).find(|at| {
         matches!(
             word(*at),
@@ -142,10 +147,13 @@ fn named(tokens: &[Token], from: usize) -> Option<Named> {
         matches!(*word, "left" | "right" | "hand" | "unprotected" | "protected" | "slow" | "wide" | "sharp" | "own")
             || matches!(*word, "gradual" | "sudden" | "short" | "slight")
     };
+    // "a three-point turn", "a U-turn".
+    let about = word(noun) == "turn" && (between == ["u"] || between.last() == Some(&"point"));
     let (last, before) = between.split_last().map_or(("", &[][..]), |(last, before)| (*last, before));
     let plain = between.iter().all(how);
     let maneuver = matches!(word(noun), "maneuver" | "manoeuvre" | "movement") && before.iter().all(how);
     let (does, end) = match word(noun) {
+        "turn" if about => (Does::UTurn, noun + 1),
         "turn" if plain => (Does::Turn, noun + 1),
         "change" if last == "lane" && before.iter().all(how) => (Does::ChangeLanes, noun + 1),
         "change" if plain && word(noun + 1) == "of" && matches!(word(noun + 2), "lane" | "lanes") => {
@@ -171,9 +179,30 @@ fn named(tokens: &[Token], from: usize) -> Option<Named> {
     Some(Named { does, side, of_lanes: end == noun + 3, end })
 }
 
+/// "began an unprotected left onto Elm Street": its noun is left out.
+fn ellipsis(tokens: &[Token], from: usize) -> Option<Named> {
+    let word = |at: usize| tokens.get(at).map_or("", |token| token.text.as_str());
+    let how = |word: &str| matches!(word, "unprotected" | "protected" | "wide" | "sharp" | "gentle" | "quick");
+    let at = from + 1 + usize::from(how(word(from + 1)));
+    let side = match word(at) {
+        "left" => "left",
+        "right" => "right",
+        _ => return None,
+    };
+    let ends = matches!(
+        word(at + 1),
+        "" | "." | "," | "onto" | "into" | "toward" | "towards" | "from" | "off" | "when" | "as" | "and"
+    );
+    ends.then_some(Named { does: Does::Turn, side: Some(side), of_lanes: true, end: at + 1 })
+}
+
 /// Writes the verb of a manoeuvre in the place of its noun and of the words before it.
 fn reword(tokens: &mut [Token], first: usize, named: &Named, form: &str) {
+    if named.does == Does::UTurn {
+        return turn_about(tokens, first, named.end, form);
+    }
     let stem = match (named.does, form) {
+        (Does::UTurn, _) => return,
         (Does::Turn, _) => "turn",
         (Does::ChangeLanes, "") => "lanechange",
         (Does::ChangeLanes, _) => "lanechang",
@@ -190,6 +219,22 @@ fn reword(tokens: &mut [Token], first: usize, named: &Named, form: &str) {
     tokens[first].text = format!("{stem}{form}");
     if let Some(side) = named.side.filter(|_| first + 1 < named.end) {
         side.clone_into(&mut tokens[first + 1].text);
+    }
+}
+
+/// "making a u turn", for one of several points too.
+fn turn_about(tokens: &mut [Token], first: usize, end: usize, form: &str) {
+    let makes = match form {
+        "ing" => "making",
+        "ed" => "made",
+        _ => "make",
+    };
+    if end < first + 4 {
+        return;
+    }
+    tokens[first..end].iter_mut().for_each(|token| "completely".clone_into(&mut token.text));
+    for (token, word) in tokens[end - 4..end].iter_mut().zip([makes, "a", "u", "turn"]) {
+        word.clone_into(&mut token.text);
     }
 }
 

@@ -5,6 +5,7 @@ mod attach;
 mod build;
 mod doors;
 mod joint;
+mod likewise;
 mod maneuver;
 mod named;
 mod object;

@@ -1,11 +1,12 @@
 //! Nouns, parts and pronouns: who is meant by them, and whether a clause begins with them or they belong to the verb before.
 
+use super::Frame;
 use super::parser::{Carry, Mention, Parser};
 use super::row::{another_finite, goes_on_behind_comma, relation_behind, transitive};
 use crate::chunk::{Article, Chunk, Joint, Noun, Piece, Placed};
 use crate::lexicon::{Adjective, Form, Occupant, Relation, Sense};
 use crate::token::number;
-use crate::world::{Actor, SUBJECT};
+use crate::world::{Actor, SUBJECT, same_kind};
 use recrash_model::account::{Act, Kind, KindGroup};
 
 /// Words between a noun and those that count who stands before it: "located", "that was stopped". [tokens]
@@ -34,6 +35,19 @@ impl Parser<'_> {
             }
             return true;
         }
+        // "a vehicle's driving task", "in a driver's eyes": nobody of the story.
+        let anyone =
+            noun.article == Article::Indefinite && (noun.kind == Some(Kind::Vehicle) || noun.occupant.is_some());
+        let owns = self.tokens.get(placed.end).is_some_and(|next| next.text == "'s");
+        let of_road = self.tokens[placed.end..]
+            .iter()
+            .take(5)
+            .any(|token| matches!(token.text.as_str(), "lane" | "path" | "way"));
+        let thing = matches!(all.get(at + 2).map(|placed| &placed.chunk), Some(Chunk::Word | Chunk::Verb(..)));
+        if anyone && owns && thing && !of_road {
+            (carry.preposition, carry.relation) = (None, None);
+            return true;
+        }
         let hint = relation_behind(all, at);
         if let Some(actor) = self.apposed(noun, all, at, carry) {
             self.world.describe(actor, noun, tokens);
@@ -48,6 +62,9 @@ impl Parser<'_> {
         let verb = matches!(next, Some(Chunk::Be | Chunk::Verb(..)));
         let actor = if verb && self.is_vehicle_of_story(noun, actor, carry) { SUBJECT } else { actor };
         let actor = if self.is_who_stands(noun, actor, carry) { SUBJECT } else { actor };
+        let actor = self.whose_driver(noun, actor, placed, carry);
+        let actor = self.behind_its_like(noun, actor, carry);
+        let actor = self.who_does_so(noun, actor, all, at);
         // "one standing passenger": the vehicle does not stand.
         let described = if noun.occupant.is_some() { noun.owner.as_deref() } else { Some(noun) };
         if let Some(described) = described {
@@ -71,12 +88,18 @@ impl Parser<'_> {
         // "As it was passing the van a coupe reversed": the coupe begins the clause around it.
         let open = carry.frame.is_some_and(|frame| {
             let frame = &self.frames[frame];
-            frame.object.is_none() && transitive(frame.sense) && frame.act() != Some(Act::Follow)
+            frame.object.is_none() && transitive(frame.sense) && !matches!(frame.act(), Some(Act::Follow | Act::Slow))
         });
         let inner = carry.joint.is_some_and(|joint| joint != Joint::And) && carry.has_verb && !carry.relative;
         let loose = carry.preposition.is_none() && carry.relation.is_none() && !(carry.be || carry.fresh || open);
-        if loose && inner && carry.mains.len() == 1 && noun.article == Article::Indefinite {
-            carry.after_comma |= another_finite(all, at) || goes_on_behind_comma(&all[at + 1..]);
+        let slows = carry.frame.is_some_and(|frame| self.frames[frame].act() == Some(Act::Slow));
+        let known = noun.article == Article::Definite && slows;
+        if loose && inner && carry.mains.len() == 1 && (noun.article == Article::Indefinite || known) {
+            // "When it braked the van behind it did not stop".
+            let denied =
+                || all[at + 1..].iter().take_while(|next| !matches!(next.chunk, Chunk::Comma | Chunk::Joint(_)));
+            let denied = || denied().any(|next| matches!(next.chunk, Chunk::Not));
+            carry.after_comma |= another_finite(all, at) || goes_on_behind_comma(&all[at + 1..]) || denied();
         }
         let person = noun.occupant.map(|(who, _)| who);
         self.mention(Mention { actor, piece: None, person, end: placed.end }, placed, carry, next);
@@ -166,6 +189,50 @@ impl Parser<'_> {
         plain && of_main && carry.fresh && carry.joint == Some(Joint::While) && self.world.topic == SUBJECT
     }
 
+    /// "The car turning left", "the turning car", of two cars: the one that was told to do so.
+    fn who_does_so(&self, noun: &Noun, actor: Actor, all: &[Placed], at: usize) -> Actor {
+        let kind = noun.kind.filter(|_| noun.article == Article::Definite && !noun.several && noun.occupant.is_none());
+        let Some(kind) = kind.filter(|kind| kind.is_vehicle() && actor != SUBJECT) else { return actor };
+        let (act, side) = match all.get(at + 1).map(|placed| &placed.chunk) {
+            Some(Chunk::Verb(Sense::Sided(act, side), Form::Ing)) => (*act, Some(*side)),
+            Some(Chunk::Verb(
+                Sense::Act(act @ (Act::Turn | Act::LaneChange | Act::Reverse | Act::Hold)),
+                Form::Ing,
+            )) => (*act, None),
+            _ => match self.doing(&all[at]).filter(|_| noun.adjectives.contains(&Adjective::Doing)) {
+                Some(doing) => doing,
+                None => return actor,
+            },
+        };
+        let fits = |who: Actor| {
+            let known = &self.world.actors[who];
+            who != SUBJECT && !known.several && known.kind.is_some_and(|known| same_kind(known, kind))
+        };
+        let did = |frame: &&Frame| {
+            let same = frame.act() == Some(act) && (side.is_none() || frame.side == side);
+            same && frame.sentence < self.sentence && frame.happened() && frame.who.is_some_and(fits)
+        };
+        let own = self
+            .frames
+            .iter()
+            .any(|frame| frame.who == Some(actor) && frame.act() == Some(act) && frame.sentence < self.sentence);
+        if own { actor } else { self.frames.iter().rev().find(did).and_then(|frame| frame.who).unwrap_or(actor) }
+    }
+
+    /// "a van whose driver was texting": who is named before drives it.
+    fn whose_driver(&self, noun: &Noun, actor: Actor, placed: &Placed, carry: &Carry) -> Actor {
+        let whose = placed.first > 0 && self.tokens[placed.first - 1].text == "whose" && noun.occupant.is_some();
+        carry.last.as_ref().filter(|_| whose && noun.owner.is_none()).map_or(actor, |last| last.actor)
+    }
+
+    /// "A second van came up behind the van that had stopped": nobody is behind itself.
+    fn behind_its_like(&self, noun: &Noun, actor: Actor, carry: &Carry) -> Actor {
+        let own = carry.subject.as_ref().is_some_and(|subject| subject.actor == actor) && actor != SUBJECT;
+        let placed =
+            carry.relation.is_some() && noun.article == Article::Definite && noun.occupant.is_none() && !noun.several;
+        if own && placed { self.world.like(actor).unwrap_or(actor) } else { actor }
+    }
+
     /// "It stood at the curb. A van went by and clipped the parked vehicle": who was told to stand, where no other one was.
     fn is_who_stands(&mut self, noun: &Noun, actor: Actor, carry: &Carry) -> bool {
         let called = noun.adjectives.iter().any(|word| matches!(word, Adjective::Stopped | Adjective::Parked));
@@ -214,6 +281,7 @@ impl Parser<'_> {
                 || owner.adjectives.iter().any(|word| matches!(word, Adjective::First | Adjective::Another));
             let actor = if told { actor } else { self.as_a_result(actor, placed.first) };
             let actor = if self.is_who_stands(owner, actor, carry) { SUBJECT } else { actor };
+            let actor = self.who_does_so(owner, actor, all, at);
             self.attribute(owner, actor, placed, carry);
             return Some(actor);
         }
@@ -269,6 +337,7 @@ impl Parser<'_> {
         let actor = self.not_who_stands(actor, all, at, carry);
         let actor = if self.stops_because(all, at, carry) { SUBJECT } else { actor };
         let actor = self.flew_there(all, at, carry).unwrap_or(actor);
+        let actor = if self.is_named_behind(all, at, carry) { SUBJECT } else { actor };
         let actor = self.latter(all[at].first).unwrap_or(actor);
         let both = self.both(all, at).filter(|_| carry.main.is_none());
         let mention = Mention { actor: both.unwrap_or(actor), piece: None, person: None, end: all[at].end };
@@ -285,6 +354,25 @@ impl Parser<'_> {
         let last = self.frames.last().filter(|frame| carry.place && hits && frame.sentence == self.sentence)?;
         let thing = |actor: &Actor| *actor != SUBJECT && !self.world.actors[*actor].acts();
         if last.sense == Sense::Push { last.object.filter(thing) } else { last.who.filter(thing) }
+    }
+
+    /// "A van struck it. Once it had stopped, the AV was hit": whom the sentence is about, named behind the comma.
+    fn is_named_behind(&self, all: &[Placed], at: usize, carry: &Carry) -> bool {
+        let fronted = carry.main.is_none() && carry.joint.is_some_and(|joint| joint != Joint::And) && carry.clause == 1;
+        let Some(comma) = all[at..].iter().position(|placed| matches!(placed.chunk, Chunk::Comma)) else {
+            return false;
+        };
+        let clause = &all[at + 1..at + comma];
+        let stops = clause.iter().any(|placed| {
+            matches!(
+                placed.chunk,
+                Chunk::Verb(Sense::Act(Act::Stop | Act::Hold | Act::Slow | Act::Park) | Sense::Parked, _)
+            )
+        });
+        let other = clause.iter().any(|placed| matches!(placed.chunk, Chunk::Noun(_) | Chunk::Pronoun));
+        let behind = all[at + comma..].iter().find(|placed| !matches!(placed.chunk, Chunk::Comma | Chunk::Word));
+        let named = behind.is_some_and(|placed| matches!(&placed.chunk, Chunk::Noun(noun) if noun.subject));
+        fronted && stops && !other && named && self.tokens[all[at].first].text == "it"
     }
 
     /// "Because a truck blocked the lane, it stopped": whom the story is about.
@@ -491,6 +579,7 @@ impl Parser<'_> {
             carry.governed = true;
             return;
         }
+        carry.reduced = false;
         self.settle(actor, carry);
         if carry.main.is_none() || !carry.place && (carry.joint == Some(Joint::And) || !carry.relative) {
             carry.main = Some(mention.clone());

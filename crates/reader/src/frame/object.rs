@@ -125,6 +125,18 @@ impl Parser<'_> {
         if passed && self.frames[frame].object == Some(SUBJECT) && mention.actor != SUBJECT {
             places.into_iter().for_each(|place| self.note(mention.actor, place));
         }
+        // "A stone kicked up by a truck struck it": the stone did.
+        let first = self.frames[frame].first;
+        let be = self.tokens[first.saturating_sub(3)..first].iter().any(|token| {
+            matches!(
+                token.text.as_str(),
+                "was" | "were" | "is" | "are" | "been" | "being" | "be" | "got" | "and" | "," | "then"
+            )
+        });
+        let of_subject = carry.subject.as_ref().is_some_and(|subject| self.frames[frame].object == Some(subject.actor));
+        if done_to && !be && of_subject && carry.subject.as_ref().is_some_and(|subject| subject.end == first) {
+            (carry.reduced, carry.has_verb) = (true, false);
+        }
         // Nobody strikes itself: "the car behind it was struck by the car that followed".
         if self.frames[frame].object == Some(mention.actor) && mention.actor != SUBJECT {
             self.frames[frame].who = Some(self.world.twin(mention.actor));

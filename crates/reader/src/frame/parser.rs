@@ -61,8 +61,12 @@ pub(super) struct Carry {
     pub(super) after_comma: bool,
     /// Who began, tried or wished what the next verb tells.
     pub(super) lead_who: Option<Mention>,
+    /// Whom the last relative clause was about: "to which it yielded and which then stopped".
+    pub(super) antecedent: Option<Mention>,
     /// Whom the relative clause is about, where it has a subject of its own: "a van that it was following".
     pub(super) gap: Option<Actor>,
+    /// Who the clause is about was called "struck by a van", and its verb is still to come.
+    pub(super) reduced: bool,
     /// What the next verb tells is told of a noun in passing: "struck by a van attempting to pass".
     pub(super) lead_describes: bool,
     /// Number of the clause.
@@ -126,6 +130,7 @@ impl Parser<'_> {
             self.step(&all, at, &mut carry);
         }
         self.share(begun);
+        self.did_likewise(&all, begun);
         self.announce_fall(begun);
         self.announce_touch(begun);
         if let Some(main) = &carry.main {

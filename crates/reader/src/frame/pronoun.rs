@@ -4,7 +4,7 @@ use super::Frame;
 use super::parser::{Carry, Parser};
 use super::row::transitive;
 use crate::chunk::{Chunk, Joint, Placed};
-use crate::lexicon::{Form, Part, Sense};
+use crate::lexicon::{Form, Part, Relation, Sense};
 use crate::world::{Actor, SUBJECT};
 use recrash_model::account::{Act, Kind};
 
@@ -45,6 +45,19 @@ impl Parser<'_> {
         });
         if let (true, Some(Some(object))) = (hits && pushes && causes, done_to.map(|frame| frame.object)) {
             return object;
+        }
+        // "came up behind that van and hit its rear": of whom it came up behind.
+        let came = self
+            .frames
+            .iter()
+            .rev()
+            .take(2)
+            .find(|frame| frame.sentence == self.sentence && frame.who == Some(actor) && !frame.is_contact());
+        let behind = came.and_then(|frame| {
+            frame.relations.iter().find_map(|(relation, to)| to.filter(|_| *relation == Relation::Behind))
+        });
+        if let Some(other) = behind.filter(|other| hits && *other != SUBJECT && *other != actor) {
+            return other;
         }
         match hits {
             // "A motorcycle was eastbound when a van turned across it and clipped it": of a sentence without the subject vehicle.

@@ -21,6 +21,8 @@ pub(super) fn apply(tokens: &mut Vec<Token>) {
     use_lanes(tokens);
     name_pickups_and_cabs(tokens);
     go_on_to(tokens);
+    made_to_stop(tokens);
+    driven_on(tokens);
     turn_out_to_be(tokens);
     drive_as_company(tokens);
     part_owners(tokens);
@@ -388,6 +390,92 @@ fn use_lanes(tokens: &mut [Token]) {
         if tokens[at].text == "using" && determined && lane.into_iter().any(|token| token.text == "lane") {
             "in".clone_into(&mut tokens[at].text);
         }
+    }
+}
+
+/// "A red light brought it to a halt", "made it brake", "forced the AV to stop": caused it to.
+fn made_to_stop(tokens: &mut Vec<Token>) {
+    let stops = |word: &str| ["stop", "halt", "brake", "slow", "wait", "yield", "swerve", "decelerate"].contains(&word);
+    let lexicon = Lexicon::get();
+    for at in (1..tokens.len().saturating_sub(3)).rev() {
+        let word = |at: usize| tokens.get(at).map_or("", |token| token.text.as_str());
+        let makes = match word(at) {
+            "brought" | "made" | "forced" | "compelled" | "obliged" | "prompted" | "required" | "led" => "caused",
+            "bringing" | "making" | "forcing" | "compelling" | "obliging" | "prompting" | "requiring" => "causing",
+            _ => continue,
+        };
+        let named = at + 1 + usize::from(matches!(word(at + 1), "the" | "our"));
+        let subject =
+            lexicon.longest(tokens, named, |meaning| matches!(meaning, Meaning::Subject)).map(|found| found.length);
+        let Some(length) = subject.or((word(at + 1) == "it").then_some(1)) else { continue };
+        let end = named + length;
+        let halts =
+            (word(end), word(end + 1)) == ("to", "a") && matches!(word(end + 2), "stop" | "halt" | "standstill");
+        let bare = word(at).starts_with("ma") && stops(word(end));
+        let infinitive = word(end) == "to" && stops(word(end + 1)) && !word(at).starts_with("br");
+        if halts && word(at).starts_with("br") {
+            "stop".clone_into(&mut tokens[end + 1].text);
+            "completely".clone_into(&mut tokens[end + 2].text);
+        } else if bare {
+            let start = tokens[end].start;
+            let to = Token { start, end: start, text: "to".to_owned(), kind: TokenKind::Word, capital: false };
+            tokens.insert(end, to);
+        } else if !infinitive {
+            continue;
+        }
+        makes.clone_into(&mut tokens[at].text);
+    }
+}
+
+/// "The driver took over and eased it forward", "was guiding the AV around a bus": what it did, with its driver.
+fn driven_on(tokens: &mut [Token]) {
+    const WAYS: [(&str, &str); 16] = [
+        ("guid", "mov"),
+        ("pilot", "mov"),
+        ("navigat", "mov"),
+        ("thread", "mov"),
+        ("coax", "mov"),
+        ("maneuver", "mov"),
+        ("took", "moved"),
+        ("brought", "moved"),
+        ("eas", "eas"),
+        ("inch", "inch"),
+        ("nos", "nos"),
+        ("edg", "edg"),
+        ("pull", "pull"),
+        ("nudg", "nudg"),
+        ("creep", "creep"),
+        ("crept", "crept"),
+    ];
+    for at in 2..tokens.len().saturating_sub(2) {
+        let Some((stem, way)) = WAYS.iter().find(|(stem, _)| tokens[at].text.starts_with(stem)) else { continue };
+        let sentence = tokens[..at].iter().rposition(|token| token.text == ".").map_or(0, |stop| stop + 1);
+        let driven = tokens[sentence..at]
+            .iter()
+            .any(|token| matches!(token.text.as_str(), "driver" | "operator" | "specialist" | "technician"));
+        let end = match (tokens[at + 1].text.as_str(), tokens[at + 2].text.as_str()) {
+            ("it", _) => at + 2,
+            ("the" | "our", "av" | "vehicle" | "truck" | "shuttle") => at + 3,
+            _ => continue,
+        };
+        let on = tokens.get(end).is_some_and(|next| {
+            matches!(
+                next.text.as_str(),
+                "forward" | "ahead" | "around" | "past" | "into" | "over" | "through" | "onto" | "toward"
+            )
+        });
+        if !(driven && on) {
+            continue;
+        }
+        let form = if *stem == *way {
+            tokens[at].text.clone()
+        } else if tokens[at].text.ends_with("ing") {
+            "moving".to_owned()
+        } else {
+            "moved".to_owned()
+        };
+        tokens[at].text = form;
+        tokens[at + 1..end].iter_mut().for_each(|token| "completely".clone_into(&mut token.text));
     }
 }
 

@@ -180,7 +180,18 @@ impl Parser<'_> {
                 | "turned"
                 | "turning"
                 | "rotated"
+                | "threw"
+                | "thrown"
+                | "whirled"
         );
+        // "struck the car and spun it", "rammed it and turned it around".
+        let struck = carry.row
+            && carry.frame.is_some_and(|frame| self.frames[frame].is_contact())
+            && matches!(all.get(at + 1).map(|placed| &placed.chunk), Some(Chunk::Pronoun))
+            && ["spin", "spun", "turn", "threw", "whirl", "rotat"].iter().any(|stem| verb.word(self).starts_with(stem));
+        if struck {
+            return true;
+        }
         if !moves || !single(&all[at]) && sense != Sense::Act(Act::Follow) {
             return false;
         }

@@ -183,6 +183,9 @@ impl Parser<'_> {
         purpose: bool,
         finite_behind: bool,
     ) -> Option<Mention> {
+        if carry.reduced && form == Form::Past && !carry.be {
+            return carry.subject.clone();
+        }
         if carry.pushed && purpose {
             return carry.last.clone();
         }
@@ -408,6 +411,35 @@ impl Parser<'_> {
         let way = matches!(verb.next(), Some(Chunk::Compass(_)));
         let at_once = !carry.be && !carry.after_comma && noun.end == verb.placed().first;
         moves && plain && of && !place && at_once || runs && road && !way && at_once && verb.form == Form::Ing
+    }
+
+    /// "struck it in passing", "hit its front in backing up": who strikes does.
+    pub(super) fn did_so_in(&self, verb: &Spoken<'_>, carry: &Carry) -> Option<Mention> {
+        let frame = carry.frame.map(|frame| &self.frames[frame]).filter(|frame| frame.is_contact() && !carry.be)?;
+        let before = verb.placed().first.checked_sub(1).map_or("", |at| self.tokens[at].text.as_str());
+        // "a gap in passing traffic".
+        let thing = matches!(verb.next(), Some(Chunk::Noun(_) | Chunk::Piece(_)));
+        let actor = frame.who.filter(|_| matches!(before, "in" | "upon") && verb.form == Form::Ing && !thing)?;
+        Some(Mention { actor, piece: None, person: None, end: verb.placed().first })
+    }
+
+    /// "hit a van parked at the curb", "struck the rear of it, stopped at a light": who was struck stood. "Struck it, stopped, and left" is a
+    /// row of what the other one did.
+    pub(super) fn stood_when_struck(&self, verb: &Spoken<'_>, carry: &Carry) -> Option<Mention> {
+        let stands = matches!(verb.sense, Sense::Act(Act::Stop | Act::Hold | Act::Park) | Sense::Parked);
+        let frame =
+            carry.frame.map(|frame| &self.frames[frame]).filter(|frame| frame.is_contact() && stands && !carry.be)?;
+        let behind = verb.all[verb.at + 1..].iter().map(|placed| &placed.chunk);
+        let row = behind.clone().any(|chunk| matches!(chunk, Chunk::Comma | Chunk::Joint(Joint::And)));
+        let named = |placed: &Placed| matches!(placed.chunk, Chunk::Noun(_) | Chunk::Piece(_));
+        let at_once = match verb.all.get(..verb.at)? {
+            [.., noun] if named(noun) => true,
+            [.., noun, comma] => named(noun) && matches!(comma.chunk, Chunk::Comma) && !row,
+            _ => false,
+        };
+        let form = verb.form == Form::Past || verb.form == Form::Ing && verb.sense == Sense::Act(Act::Hold);
+        let actor = frame.object.filter(|object| at_once && form && !frame.passive && frame.who != Some(*object))?;
+        Some(Mention { actor, piece: None, person: None, end: verb.placed().first })
     }
 
     /// "in a queue of traffic", "in a line of cars".

@@ -13,6 +13,9 @@ use crate::lexicon::{Form, Occupant, Progress, Sense};
 use crate::world::SUBJECT;
 use recrash_model::account::{Act, Kind};
 
+/// "whose driver was fast asleep": so far behind "whose" its clause may end. [tokens]
+const WHOSE_WITHIN: usize = 6;
+
 impl Parser<'_> {
     /// A verb begins a frame.
     pub(super) fn verb(&mut self, sense: Sense, form: Form, all: &[Placed], at: usize, carry: &mut Carry) {
@@ -29,6 +32,10 @@ impl Parser<'_> {
             return;
         }
         let mut verb = Spoken { sense, form, all, at };
+        // "a van whose hood was up struck it", "whose driver was asleep ran into it".
+        let first = all[at].first;
+        let whose = self.tokens[first.saturating_sub(WHOSE_WITHIN)..first].iter().any(|token| token.text == "whose");
+        carry.be &= !(whose && form == Form::Past && at > 0 && !matches!(all[at - 1].chunk, Chunk::Be));
         let stands = matches!(sense, Sense::Act(Act::Hold | Act::Stop | Act::Follow) | Sense::Approach);
         if stands && form == Form::Past && !carry.be && self.inverts(all, at) {
             (carry.inverts, carry.subject, carry.last) = (true, None, None);
@@ -62,11 +69,19 @@ impl Parser<'_> {
         let stood = self.stood_as_found(&verb, carry);
         let found = stood.is_some();
         let beside = so.map(|(mention, _)| mention).or(stood).or_else(|| self.beside(&verb, carry));
+        let meanwhile = self.did_so_in(&verb, carry);
+        let while_struck = self.stood_when_struck(&verb, carry);
+        let found = found || while_struck.is_some();
+        let beside = meanwhile.clone().or(while_struck).or(beside);
         let who =
             beside.or_else(|| self.who_of(verb.sense, form, verb.placed(), carry, purpose, another_finite(all, at)));
+        carry.reduced &= !finite;
         let unknown = self.is_of_unknown(&verb, carry);
-        let who = who.filter(|_| !carry.stranger && !both && !unknown);
+        // "A fault caused it to brake": it braked.
+        let caused = carry.pushed && purpose && matches!(verb.sense, Sense::Act(_) | Sense::Sided(..));
+        let who = who.filter(|_| (!carry.stranger || caused) && !both && !unknown);
         let mut frame = self.begun_frame(&verb, who.as_ref(), carry);
+        frame.described |= meanwhile.is_some() || found;
         if leads {
             frame.progress = own_progress.unwrap_or(Progress::Real);
         }
