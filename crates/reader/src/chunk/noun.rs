@@ -723,7 +723,7 @@ impl Chunker<'_> {
 
 /// Whether "traffic" before this word is nobody who drives: "traffic light", "traffic rules".
 pub fn is_of_traffic(word: &str) -> bool {
-    const NAMES: [&str; 24] = [
+    const NAMES: [&str; 23] = [
         "light",
         "lights",
         "signal",
@@ -736,7 +736,6 @@ pub fn is_of_traffic(word: &str) -> bool {
         "congestion",
         "stop",
         "conditions",
-        "queue",
         "sign",
         "cone",
         "barrier",

@@ -25,6 +25,7 @@ pub(crate) fn place_of(reading: &Reading<'_>, actor: Actor) -> Option<Fact<Origi
     let told = value.zip(relation).map(|(value, relation)| Fact { value, source: clues.has(relation) });
     told.or_else(|| behind_partner(reading, actor))
         .or_else(|| in_queue(&clues))
+        .or_else(|| in_that_queue(&clues))
         .or_else(|| in_other_lane(&clues))
         .or_else(|| by_directions(&clues))
         .or_else(|| before_its_turn(&clues))
@@ -270,8 +271,38 @@ fn queue_of(reading: &Reading<'_>, actor: Actor) -> Option<(usize, usize)> {
     let story = &reading.story;
     let (first, end) = story.world.actors[actor].kind_tokens?;
     let from = first.checked_sub(2)?;
-    let queue = ["queue", "line"].contains(&story.tokens[from].text.as_str()) && story.tokens[from + 1].text == "of";
-    queue.then_some((from, end))
+    let word = |at: usize| story.tokens.get(at).map_or("", |token| token.text.as_str());
+    let queue = ["queue", "line"].contains(&word(from)) && word(from + 1) == "of";
+    // "in queued traffic", "in a traffic queue".
+    let traffic = word(end - 1) == "traffic"
+        && (matches!(word(first - 1), "in" | "behind") || word(first) == "a" && word(from + 1) == "in");
+    let stands = (first..end).any(|at| matches!(word(at), "queued" | "backed" | "stopped" | "standing" | "stationary"));
+    let jam = matches!(word(end), "queue" | "jam" | "backup");
+    (queue || traffic && (stands || jam)).then_some((from, end))
+}
+
+/// "Traffic was queued for the light, and it was standing in that queue": what it stands in is ahead of it.
+fn in_that_queue(clues: &Clues<'_>) -> Option<Fact<Origin>> {
+    let (reading, actor) = (clues.reading, clues.actor);
+    let known = &reading.story.world.actors[actor];
+    let word = |at: usize| reading.story.tokens[at].text.as_str();
+    let queues = |(number, _): (usize, &Frame)| {
+        let (first, end) = reading.window(number);
+        (first..end).any(|at| word(at).starts_with("queue") || word(at) == "lined" || word(at) == "backed")
+    };
+    if !known.several || !known.kind.is_some_and(Kind::is_vehicle) || !reading.before(actor).any(queues) {
+        return None;
+    }
+    let stands = |frame: &Frame| matches!(frame.act(), Some(Act::Hold | Act::Stop)) && frame.happened();
+    reading.before(SUBJECT).filter(|(_, frame)| stands(frame)).find_map(|(number, _)| {
+        let (first, end) = reading.window(number);
+        let at = (first..end.saturating_sub(2)).find(|&at| {
+            word(at) == "in"
+                && matches!(word(at + 1), "that" | "the" | "this")
+                && matches!(word(at + 2), "queue" | "line")
+        })?;
+        Some(reading.told(Origin::Ahead, at, at + 3))
+    })
 }
 
 /// Whether somebody is told to stand in the queue that is named by these tokens.

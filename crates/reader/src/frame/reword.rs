@@ -362,8 +362,23 @@ fn go_on_to(tokens: &mut [Token]) {
 
 /// "a pick-up", "another cab": a pickup and a taxi, where the words behind do not make a place or an act of it. The cab of a truck is none.
 fn name_pickups_and_cabs(tokens: &mut Vec<Token>) {
-    const PLACES: [&str; 12] =
-        ["location", "point", "area", "zone", "spot", "or", "site", "passengers", "and", "request", "time", "of"];
+    const PLACES: [&str; 15] = [
+        "drop",
+        "maneuver",
+        "event",
+        "location",
+        "point",
+        "area",
+        "zone",
+        "spot",
+        "or",
+        "site",
+        "passengers",
+        "and",
+        "request",
+        "time",
+        "of",
+    ];
     let truck = tokens.iter().any(|token| matches!(token.text.as_str(), "truck" | "semi" | "tractor"));
     let cab = tokens.windows(2).any(|pair| matches!(pair[0].text.as_str(), "a" | "another") && pair[1].text == "cab");
     for token in tokens.iter_mut().filter(|token| cab && !truck && token.text == "cab") {
