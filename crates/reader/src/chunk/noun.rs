@@ -210,7 +210,7 @@ impl Chunker<'_> {
         }
         // "the slowly moving van".
         let adverb = self.text(at).ends_with("ly")
-            || matches!(self.text(at), "then" | "still" | "now" | "already" | "just" | "almost");
+            || matches!(self.text(at), "then" | "still" | "now" | "already" | "just" | "almost" | "once");
         // "a by then stopped van".
         if self.text(at) == "by" && matches!(self.text(at + 1), "then" | "now") && determined && self.adjective(at + 2)
         {
@@ -532,6 +532,12 @@ impl Chunker<'_> {
         let walks = kind.is_some_and(|kind| matches!(kind.group(), KindGroup::OnFoot | KindGroup::Cyclist));
         let named = kind == Some(Kind::Animal) && self.tokens[at].capital && matches!(next, "pedestrian" | "crosswalk");
         if place && (walks || kind == Some(Kind::Animal)) || named {
+            return None;
+        }
+        // "its boom", "the crane's arm": a part, and no gate.
+        let owned =
+            at > self.first && matches!(self.text(at - 1), "its" | "'s") && matches!(self.text(at), "boom" | "arm");
+        if owned && kind == Some(Kind::Gate) {
             return None;
         }
         // "the bus only lane", "its vehicle speed".

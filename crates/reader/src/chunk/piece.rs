@@ -65,12 +65,12 @@ impl Chunker<'_> {
             // "a sensor at its front right".
             "at" | "on"
                 if draft.piece.parts == [Part::Noun]
-                    && matches!(self.text(draft.at + 1), "its" | "their")
-                    && self.part(draft.at + 2).is_some_and(|(part, _)| part != Part::Noun) =>
+                    && matches!(self.text(draft.at + 1), "its" | "their" | "the")
+                    && self.names_a_corner(draft.at + 2) =>
             {
-                draft.piece.its = true;
+                draft.piece.its = self.text(draft.at + 1) != "the";
                 self.further_parts(draft.at + 2, &mut draft);
-                draft
+                if self.text(draft.at) == "of" { self.of_whom(draft)? } else { draft }
             }
             "on" if draft.nouns > 0 => {
                 self.on_the_side(&mut draft);
@@ -264,6 +264,15 @@ impl Chunker<'_> {
             return None;
         }
         Some(draft)
+    }
+
+    /// "right rear", "front left corner".
+    fn names_a_corner(&self, at: usize) -> bool {
+        let Some((one, length)) = self.part(at) else { return false };
+        let other = self.part(at + length).map(|(part, _)| part);
+        let end = |part: Part| matches!(part, Part::Front | Part::Rear);
+        let side = |part: Part| matches!(part, Part::Left | Part::Right);
+        other.is_some_and(|other| end(one) && side(other) || side(one) && end(other))
     }
 
     /// A side of a vehicle that is named here: "left side", "driver side".

@@ -265,7 +265,7 @@ impl Chunker<'_> {
         let word = self.text(at);
         let named = at >= 2
             && matches!(self.text(at - 1), "the" | "its")
-            && matches!(self.text(at - 2), "in" | "within" | "using" | "into" | "to")
+            && matches!(self.text(at - 2), "in" | "within" | "using" | "into" | "to" | "toward" | "towards")
             && (at.saturating_sub(LANES_BEFORE)..at).any(|at| self.text(at) == "lanes");
         // "in the one farthest right".
         if let (true, "one", Some((lane, length))) = (named, word, self.told_behind_lane(at)) {
@@ -314,7 +314,7 @@ impl Chunker<'_> {
             "on" | "at" if self.text(behind + 1) == "the" && self.text(behind + 2) == "far" => {
                 Some((side_at(behind + 3)?, 4))
             }
-            "second" | "third" | "2nd" | "3rd" if self.text(behind + 1) == "from" => {
+            "second" | "third" | "fourth" | "2nd" | "3rd" | "4th" if self.text(behind + 1) == "from" => {
                 let side = the(behind + 2);
                 side_at(side).map(|_| (LaneWord::Center, side + 1 - behind))
             }
@@ -386,6 +386,20 @@ impl Chunker<'_> {
         }
         if !matches!(self.text(at), "second" | "third" | "fourth" | "2nd" | "3rd" | "4th" | "number") {
             return None;
+        }
+        // "the second of the three lanes".
+        let of = at + 1;
+        let many = of + 1 + usize::from(matches!(self.text(of + 1), "the" | "its"));
+        if self.text(of) == "of" && self.text(many + 1) == "lanes" {
+            let number = match self.text(at) {
+                "second" | "2nd" => 2,
+                "third" | "3rd" => 3,
+                _ => return None,
+            };
+            // From which side it is counted is not told.
+            let many = count(self.text(many)).filter(|many| number < *many)?;
+            return (many > 2)
+                .then_some((LaneWord::Center, (at..at + 6).find(|&at| self.text(at) == "lanes")? + 1 - at));
         }
         let words: Vec<&str> = (at + 1..at + 6).map(|at| self.text(at)).collect();
         let length = match words.as_slice() {

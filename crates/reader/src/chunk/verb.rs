@@ -4,6 +4,7 @@
 
 use super::{Chunk, Chunker, DETERMINERS, Placed};
 use crate::lexicon::{Form, Found, Meaning, Relation, Sense};
+use crate::token::TokenKind;
 use recrash_model::account::{Act, KindGroup, LeftRight};
 
 /// A phrase that the lexicon knows as a verb, and what stands around it.
@@ -397,7 +398,7 @@ impl Chunker<'_> {
         let touches = |sense| matches!(sense, Sense::Contact | Sense::ReverseContact | Sense::OpenDoorInto);
         let turns = |sense| matches!(sense, Sense::Act(Act::Turn) | Sense::Sided(Act::Turn, _));
         let wrong_way = |sense| sense == Sense::Act(Act::WrongWay);
-        let lane = matches!(self.text(behind), "lane" | "lanes" | "pocket");
+        let lane = matches!(self.text(behind), "lane" | "lanes" | "pocket" | "only" | "bay");
         // "began to slow to turn": two acts, of which it began the first.
         let two = (at..behind).filter(|&at| self.text(at) == "to").count() > 1;
         let others = |allowed: &dyn Fn(Sense) -> bool| {
@@ -433,7 +434,8 @@ impl Chunker<'_> {
 
     /// "went back to the left", "came back over": to where it had been.
     fn comes_back(&self, at: usize, behind: usize) -> bool {
-        const GOES: [&str; 9] = ["go", "went", "gone", "com", "cam", "mov", "drift", "eas", "driv"];
+        const GOES: [&str; 13] =
+            ["go", "went", "gone", "com", "cam", "mov", "drift", "eas", "driv", "drov", "travel", "settl", "start"];
         GOES.iter().any(|stem| self.text(at).starts_with(stem))
             && matches!(
                 self.text(behind),
@@ -449,6 +451,13 @@ impl Chunker<'_> {
                     | "and"
                     | "for"
                     | "inside"
+                    | "along"
+                    | "up"
+                    | "behind"
+                    | "around"
+                    | "across"
+                    | "through"
+                    | "down"
             )
     }
 
@@ -457,7 +466,8 @@ impl Chunker<'_> {
         if !matches!(self.text(at - 1), "into" | "onto") {
             return false;
         }
-        if self.text(at) == "traffic" {
+        // "drove into oncoming traffic", "ran into the junction".
+        if self.text(at) == "traffic" || self.text(at + 1) == "traffic" || self.is_a_place(at) {
             return true;
         }
         // "rolled into the middle of its lane".
@@ -500,6 +510,32 @@ impl Chunker<'_> {
             last.is_some_and(|last| matches!(last.chunk, Chunk::Verb(_, Form::Past)) && has(last.first).is_some())
         };
         has(at).is_some() || matches!(self.text(at - 1), "and" | "then") && row()
+    }
+
+    /// "the next parking lot", "a yard", where no thing of it is named: "the wall of", "the garage door".
+    fn is_a_place(&self, at: usize) -> bool {
+        const PLACES: [&str; 17] = [
+            "junction",
+            "crossing",
+            "crossroads",
+            "roundabout",
+            "driveway",
+            "lot",
+            "garage",
+            "alley",
+            "alleyway",
+            "tunnel",
+            "zone",
+            "stall",
+            "shoulder",
+            "yard",
+            "plaza",
+            "station",
+            "bay",
+        ];
+        let end = (at..at + 4).take_while(|&at| self.tokens.get(at).is_some_and(|token| token.kind == TokenKind::Word));
+        let place = end.into_iter().find(|&at| PLACES.contains(&self.text(at)));
+        place.is_some_and(|place| self.head(place + 1).is_none() && self.part(place + 1).is_none())
     }
 
     /// A base form is a verb only behind the words that call for one: "to stop", "did not stop", "to stop and wait".

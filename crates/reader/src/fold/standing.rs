@@ -300,6 +300,11 @@ pub(super) fn reasons(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<StandReas
                 *other != reason && rank(*other) < rank(reason) && *from < at + length && at < from + count
             };
             let place = reason == StandReason::Pedestrian && is_a_place(tokens, begins + at);
+            // "slowing for a passenger car".
+            let car = tokens.get(begins + at + length).is_some_and(|next| {
+                matches!(next.text.as_str(), "car" | "cars" | "vehicle" | "vehicles" | "van" | "sedan" | "suv")
+            });
+            let place = place || car && reason == StandReason::PickupDropoff;
             let green = reason == StandReason::RedLight && shows_another_colour(reading, begins + at, length);
             if !place && !green && !all.iter().any(|known| known.value == reason) && !named.iter().any(within) {
                 all.push(reading.told(reason, begins + at, begins + at + length));

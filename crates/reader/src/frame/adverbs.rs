@@ -139,7 +139,9 @@ fn backwards(frame: &Frame, words: &[&str]) -> bool {
     let says = pair(&["in"], &["reverse"])
         || pair(&["tail", "rear", "end"], &["first"])
         || words.iter().any(|word| matches!(*word, "backward" | "backwards" | "rearward" | "rearwards"));
-    moves && frame.sense != Sense::Parked && (says || parks)
+    // "crossed the street in reverse".
+    let over = matches!(frame.act(), Some(Act::Cross | Act::Turn)) && pair(&["in"], &["reverse"]);
+    over || moves && frame.sense != Sense::Parked && (says || parks)
 }
 
 /// "shifted into reverse and came back until ...".

@@ -226,6 +226,16 @@ impl Parser<'_> {
         let side = matches!(self.tokens[placed.end - 1].text.as_str(), "left" | "right" | "ahead" | "rear");
         let begins = indefinite && side && carry.frame.is_none() && carry.subject.is_none();
         let governs = governs && !possessed && !begins;
+        // "drove straight ahead", "pulled ahead and": so it went, and nobody is there.
+        let goes = carry.frame.map(|frame| &self.frames[frame]).is_some_and(|frame| {
+            let along = matches!(frame.act(), Some(Act::Follow | Act::SetOff | Act::Accelerate));
+            let straight =
+                |token: &crate::token::Token| matches!(token.text.as_str(), "straight" | "right" | "on" | "slowly");
+            along && frame.form == Form::Past && self.tokens[frame.end..placed.first].iter().all(straight)
+        });
+        if goes && !governs && placed.end == placed.first + 1 && self.tokens[placed.first].text == "ahead" {
+            return;
+        }
         // "hit the van behind the front wheel": where on the van.
         let part = matches!(next, Some(Chunk::Piece(piece)) if piece.owner.is_none() && !piece.its);
         let touches = carry.frame.is_some_and(|frame| self.frames[frame].is_contact());
@@ -402,6 +412,16 @@ impl Parser<'_> {
         let drives =
             carry.frame.is_none_or(|frame| matches!(self.frames[frame].act(), Some(Act::Follow | Act::SetOff)));
         let to = drives && placed.first > 0 && self.tokens[placed.first - 1].text == "the";
+        // "with its nose to the north": so it faces.
+        let nose = carry.last.as_ref().filter(|last| {
+            let front = last.piece.as_ref().is_some_and(|piece| piece.parts == [Part::Front]);
+            front && (last.end + 1..=last.end + 2).contains(&placed.first) && carry.preposition == Some("to")
+        });
+        if let Some(nose) = nose {
+            self.world.actors[nose.actor].heading.get_or_insert(stands);
+            carry.preposition = None;
+            return;
+        }
         let onto = matches!(carry.preposition, Some("onto" | "into")) || carry.preposition == Some("to") && !to;
         let (governed, there) = (carry.preposition.is_some(), matches!(carry.preposition, Some("at" | "near")));
         carry.preposition = None;
@@ -573,6 +593,12 @@ impl Parser<'_> {
             }
             return;
         };
+        // "came out of the right lane", "pulled out of the left one": it changed lanes.
+        let driven = matches!(lane, LaneWord::Left | LaneWord::Right | LaneWord::Center);
+        let out = preposition == Some("out") || from && self.frames[frame].act() == Some(Act::PullOut);
+        if driven && out && matches!(self.frames[frame].act(), Some(Act::PullOut | Act::Follow | Act::Drift)) {
+            self.frames[frame].sense = Sense::Act(Act::LaneChange);
+        }
         let side = match lane {
             LaneWord::Left | LaneWord::LeftTurn => Some(LeftRight::Left),
             LaneWord::Right | LaneWord::RightTurn => Some(LeftRight::Right),

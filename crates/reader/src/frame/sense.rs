@@ -8,11 +8,15 @@ use crate::chunk::Chunk;
 use crate::lexicon::{Form, Occupant, Progress, Sense};
 use crate::token::{Token, TokenKind};
 use crate::world::SUBJECT;
-use recrash_model::account::{Act, Compass, KindGroup, LeftRight};
+use recrash_model::account::{Act, Compass, Kind, KindGroup, LeftRight};
 
 type Rule = fn(&Parser<'_>, &Spoken<'_>, &Carry) -> Option<Sense>;
 
-const SENSES: [Rule; 42] = [
+const SENSES: [Rule; 46] = [
+    lowers_a_part,
+    goes_up_or_down,
+    goes_down_a_hill,
+    goes_forward_into,
     goes_down_a_road,
     is_operated_by,
     goes_through_no_junction,
@@ -205,6 +209,47 @@ fn goes_down_a_road(parser: &Parser<'_>, verb: &Spoken<'_>, _carry: &Carry) -> O
     let ground =
         parser.tokens.get(end + 1).is_some_and(|next| matches!(next.text.as_str(), "ground" | "pavement" | "side"));
     (down && road && !ground).then_some(Sense::Act(Act::Follow))
+}
+
+/// "started lowering a loading ramp", "lowered its boom": what it lowers does not fall.
+fn lowers_a_part(parser: &Parser<'_>, verb: &Spoken<'_>, carry: &Carry) -> Option<Sense> {
+    const PARTS: [&str; 9] = ["ramp", "boom", "liftgate", "gate", "platform", "blade", "plow", "window", "tailgate"];
+    let lowers = verb.sense == Sense::Act(Act::Fall) && verb.word(parser).starts_with("lower") && !carry.be;
+    let active = verb.form == Form::Ing || carry.subject.is_some() && !carry.be;
+    let mut behind =
+        parser.tokens[verb.placed().end..].iter().take(5).take_while(|token| token.kind == TokenKind::Word);
+    (lowers && active && behind.any(|token| PARTS.contains(&token.text.as_str()))).then_some(Sense::Other)
+}
+
+/// "The barrier arm went up", "the gate came down": a gate goes nowhere.
+fn goes_up_or_down(parser: &Parser<'_>, verb: &Spoken<'_>, carry: &Carry) -> Option<Sense> {
+    let subject = carry.subject.as_ref().filter(|subject| subject.piece.is_none())?;
+    let gate = matches!(parser.world.actors[subject.actor].kind, Some(Kind::Gate | Kind::Barrier));
+    let moves = matches!(verb.sense, Sense::Act(Act::Follow | Act::Roll | Act::LoseControl | Act::SetOff));
+    let words = &parser.tokens[verb.placed().first + 1..];
+    let way = words.iter().take(1).map(|token| token.text.as_str()).next()?;
+    match way {
+        "up" | "open" | "back" if gate && moves => Some(Sense::Other),
+        "down" | "closed" | "shut" if gate && moves => Some(Sense::Act(Act::Fall)),
+        _ => None,
+    }
+}
+
+/// "descended the hill": who drives or rides there falls nowhere.
+fn goes_down_a_hill(parser: &Parser<'_>, verb: &Spoken<'_>, carry: &Carry) -> Option<Sense> {
+    const SLOPES: [&str; 8] = ["hill", "slope", "ramp", "street", "road", "grade", "incline", "driveway"];
+    let descends = verb.sense == Sense::Act(Act::Fall) && verb.word(parser).starts_with("descend");
+    let acts = carry.subject.as_ref().is_some_and(|subject| parser.world.actors[subject.actor].acts());
+    let mut behind = parser.tokens[verb.placed().end..].iter().take(4);
+    (descends && acts && behind.any(|token| SLOPES.contains(&token.text.as_str()))).then_some(Sense::Act(Act::Follow))
+}
+
+/// "moved forward into its rear bumper": nobody is pushed.
+fn goes_forward_into(parser: &Parser<'_>, verb: &Spoken<'_>, carry: &Carry) -> Option<Sense> {
+    let words = &parser.tokens[verb.placed().first..verb.placed().end];
+    let at_once = words.len() == 3 && words[1].text == "forward" && words[2].text == "into";
+    let touches = matches!(verb.next(), Some(Chunk::Noun(_) | Chunk::Piece(_) | Chunk::Pronoun)) && !carry.be;
+    (verb.sense == Sense::Push && at_once && words[0].text.starts_with("mov") && touches).then_some(Sense::Contact)
 }
 
 /// "traffic was backed up" stands.

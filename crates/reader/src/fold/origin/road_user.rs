@@ -516,16 +516,18 @@ impl<'a> Case<'a> {
 
     /// "entered the intersection from the left", "ran the light".
     fn crosses(&self) -> Told {
-        let side = self.side?;
+        let ran = self.partner.did(Act::RunRed) || self.partner.did(Act::RunStop);
+        // "ran the light and struck its left side".
+        let told = self.behind || self.ahead || passes_subject(self.reading, self.actor) || self.moved_over();
+        let side = self.side.or_else(|| self.touched.filter(|_| ran && !told))?;
         let sided = |frame: &Frame| {
             frame.relations.iter().any(|(relation, _)| matches!(relation, Relation::Left | Relation::Right))
         };
         let enters = |frame: &Frame| matches!(frame.sense, Sense::Act(Act::Enter | Act::RunRed | Act::RunStop));
-        let ran = self.partner.did(Act::RunRed) || self.partner.did(Act::RunStop);
         // "passed it on the left, and turned right, crossing in front of it".
         let passed = passes_subject(self.reading, self.actor);
         let crossing = self.did(Act::Cross) && !passed
-            || ran && self.first_is_side()
+            || ran && (self.first_is_side() || self.side.is_none())
             || self.frames().any(|(_, frame)| enters(frame) && sided(frame))
             || self.frames().any(|(_, frame)| frame.sense == Sense::Approach && sided(frame)) && !self.did(Act::Pass)
             || self.comes_across()
