@@ -285,7 +285,7 @@ pub(super) fn reasons(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<StandReas
         // A reason may stand before: "due to a queue, it stopped".
         let sentence = reading.story.sentences[frame.sentence];
         let begins = if all.is_empty() && !frame.aside { lead_in(reading, number).unwrap_or(first) } else { first };
-        let end = in_its_queue(reading, number, end).min(sentence.end);
+        let (own, end) = (end.min(sentence.end), in_its_queue(reading, number, end).min(sentence.end));
         // What happened while it stood is not why: "was stopped when an ambulance passed".
         let stood = frame.act() == Some(Act::Hold);
         let then = (frame.end..end).find(|at| stood && tokens[*at].text == "when").unwrap_or(end);
@@ -306,7 +306,14 @@ pub(super) fn reasons(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<StandReas
             });
             let place = place || car && reason == StandReason::PickupDropoff;
             let green = reason == StandReason::RedLight && shows_another_colour(reading, begins + at, length);
-            if !place && !green && !all.iter().any(|known| known.value == reason) && !named.iter().any(within) {
+            // "behind a van that was letting out passengers": why the van stood.
+            let of_queue = begins + at >= own && !matches!(reason, StandReason::RedLight | StandReason::Queue);
+            if !place
+                && !green
+                && !of_queue
+                && !all.iter().any(|known| known.value == reason)
+                && !named.iter().any(within)
+            {
                 all.push(reading.told(reason, begins + at, begins + at + length));
             }
         }

@@ -50,7 +50,7 @@ pub(super) fn apply(frames: &mut Vec<Frame>, tokens: &[Token], sentences: &[Sent
             frames[number].sense = Sense::Act(Act::Enter);
         } else if turns_back_in(frames, number, &words) {
             frames[number].sense = Sense::Act(Act::LaneChange);
-        } else if passes_nobody(frame, &words) || goes_through_a_place(frame, &words) {
+        } else if passes_nobody(frame, &words) {
             frames[number].sense = Sense::Act(Act::Follow);
         } else if pulls_out_to_pass(frames, number, &words) {
             frames[number].sense = Sense::Act(Act::Drift);
@@ -205,21 +205,6 @@ fn passes_nobody(frame: &Frame, words: &[&str]) -> bool {
     let own = frame.end - frame.first;
     let place = words.iter().skip(own).take(4).any(|word| PLACES.contains(word));
     across || place && frame.relations.is_empty()
-}
-
-/// "was driving through a parking garage": no junction.
-fn goes_through_a_place(frame: &Frame, words: &[&str]) -> bool {
-    let through = words.iter().take(3).position(|word| *word == "through");
-    let place = |word: &&str| {
-        matches!(
-            *word,
-            "garage" | "lot" | "alley" | "alleyway" | "tunnel" | "zone" | "gate" | "campus" | "park" | "neighborhood"
-        )
-    };
-    let junction = |word: &&str| matches!(*word, "intersection" | "junction" | "crossing");
-    let behind = through.map(|through| &words[through + 1..words.len().min(through + 5)]);
-    frame.act() == Some(Act::Enter)
-        && behind.is_some_and(|behind| behind.iter().any(place) && !behind.iter().any(junction))
 }
 
 /// "pulled out over the line to get by": begun to pass, and from no kerb.

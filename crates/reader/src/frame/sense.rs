@@ -178,8 +178,22 @@ fn is_operated_by(parser: &Parser<'_>, verb: &Spoken<'_>, _carry: &Carry) -> Opt
 
 /// "drove through a parking garage", "going through a work zone": it enters no intersection.
 fn goes_through_no_junction(parser: &Parser<'_>, verb: &Spoken<'_>, _carry: &Carry) -> Option<Sense> {
-    const PLACES: [&str; 11] =
-        ["garage", "lot", "alley", "alleyway", "tunnel", "zone", "neighborhood", "curve", "area", "structure", "bend"];
+    const PLACES: [&str; 14] = [
+        "garage",
+        "lot",
+        "alley",
+        "alleyway",
+        "tunnel",
+        "zone",
+        "neighborhood",
+        "curve",
+        "area",
+        "structure",
+        "bend",
+        "gate",
+        "campus",
+        "park",
+    ];
     let placed = verb.placed();
     let through = verb.sense == Sense::Act(Act::Enter) && parser.tokens[placed.end - 1].text == "through";
     let mut noun = parser.tokens[placed.end..].iter().take(5).take_while(|token| token.kind == TokenKind::Word);
