@@ -229,7 +229,7 @@ impl Candidate<'_> {
             && self.is_single()
             && matches!(
                 self.word(1),
-                "mode" | "system" | "systems" | "task" | "tasks" | "function" | "software" | "stack"
+                "mode" | "system" | "systems" | "task" | "tasks" | "function" | "software" | "stack" | "platform"
             );
         system
             || matches!(self.word(0), "traveling" | "driving" | "turning" | "merging")
@@ -278,6 +278,13 @@ impl Candidate<'_> {
     /// "at a railroad crossing", "a pedestrian crossing sign". "For a deer crossing the road" is one.
     fn is_a_crossing(&self) -> bool {
         let named = matches!(self.word_before, "railroad" | "railway" | "pedestrian" | "school" | "deer" | "cattle");
+        // "at an unprotected crossing".
+        let plain =
+            matches!(self.word_before, "unprotected" | "unmarked" | "marked" | "level" | "grade" | "controlled")
+                && self.is_single();
+        if self.word(0) == "crossing" && plain {
+            return true;
+        }
         // "At the Oak Street crossing it stopped".
         let street =
             matches!(self.word_before, "street" | "avenue" | "road" | "st" | "ave" | "rd" | "boulevard" | "[xxx]");
@@ -425,6 +432,14 @@ impl Chunker<'_> {
         if over(sense) && self.text(at).starts_with("pull") && (at..behind).any(|at| self.text(at) == "parking") {
             return others(&|sense| !over(sense));
         }
+        // "started its left blinker", "a left side": no turn.
+        if turns(sense)
+            && matches!(last, "left" | "right")
+            && !self.text(at).starts_with("turn")
+            && self.is_of_a_side(behind)
+        {
+            return others(&|sense| !turns(sense));
+        }
         // "drove against traffic laws" is no way.
         if wrong_way(sense) && last == "traffic" && super::is_of_traffic(self.text(behind)) {
             return others(&|sense| !wrong_way(sense));
@@ -434,8 +449,9 @@ impl Chunker<'_> {
 
     /// "went back to the left", "came back over": to where it had been.
     fn comes_back(&self, at: usize, behind: usize) -> bool {
-        const GOES: [&str; 13] =
-            ["go", "went", "gone", "com", "cam", "mov", "drift", "eas", "driv", "drov", "travel", "settl", "start"];
+        const GOES: [&str; 15] = [
+            "go", "went", "gone", "com", "cam", "mov", "drift", "eas", "driv", "drov", "travel", "settl", "start", "drop", "fell",
+        ];
         GOES.iter().any(|stem| self.text(at).starts_with(stem))
             && matches!(
                 self.text(behind),
@@ -459,6 +475,35 @@ impl Chunker<'_> {
                     | "through"
                     | "down"
             )
+    }
+
+    /// Whether a side here is that of a thing: "its left blinker", "the right lane".
+    fn is_of_a_side(&self, at: usize) -> bool {
+        const THINGS: [&str; 22] = [
+            "lane",
+            "side",
+            "signal",
+            "blinker",
+            "indicator",
+            "front",
+            "rear",
+            "door",
+            "mirror",
+            "bumper",
+            "wheel",
+            "corner",
+            "fender",
+            "tire",
+            "edge",
+            "curb",
+            "turn",
+            "hand",
+            "arrow",
+            "headlight",
+            "window",
+            "most",
+        ];
+        THINGS.iter().any(|thing| self.text(at).starts_with(thing))
     }
 
     /// Whether the words behind "into" or "onto" name a place: "the roadway", "the van's lane".

@@ -507,12 +507,23 @@ fn yields_in_motion(reading: &Reading<'_>, number: usize, frame: &Frame) -> bool
     let told = reading.story.frames.iter().filter(same).any(|other| slows(other.act()));
     let last = last_act(reading, number, frame, |_| true);
     // "traveling at a low speed, yielding to a queue": it was slow already.
-    let slow = frame.who.is_some_and(|who| {
+    let creeps = frame.who.is_some_and(|who| {
         let before = reading.before(who).take_while(|(other, _)| *other < number).last();
-        before.is_some_and(|(last, before)| {
-            before.sentence == frame.sentence && frame.form == Form::Ing && manner(reading, last) == Some(Manner::Slow)
+        before.is_some_and(|(_, before)| {
+            let word = reading.story.tokens[before.first].text.as_str();
+            before.sentence == frame.sentence
+                && ["crept", "creep", "inch", "edg", "nos"].iter().any(|stem| word.starts_with(stem))
         })
     });
+    let slow = creeps
+        || frame.who.is_some_and(|who| {
+            let before = reading.before(who).take_while(|(other, _)| *other < number).last();
+            before.is_some_and(|(last, before)| {
+                before.sentence == frame.sentence
+                    && frame.form == Form::Ing
+                    && manner(reading, last) == Some(Manner::Slow)
+            })
+        });
     // "reversed without yielding".
     let drives = last.is_some() && !slows(last) && last != Some(Act::Reverse);
     to.is_some() && !told && drives && !slow && !reading.is_after(number)

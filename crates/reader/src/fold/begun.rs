@@ -38,16 +38,30 @@ fn was_denied(story: &Story, number: usize) -> bool {
     }
 }
 
-/// "Before it had come to a halt, a van hit it", "before it could stop".
+/// "Before it had come to a halt, a van hit it", "stopped before it entered the junction": nobody did. "Passed a van before it turned" tells
+/// one thing behind the other.
 fn is_before_it(story: &Story, number: usize) -> bool {
     let frame = &story.frames[number];
     let clause = story.tokens[story.sentences[frame.sentence].first..frame.first].iter().rev();
     let words: Vec<&str> = clause.map(|token| token.text.as_str()).take_while(|word| *word != ",").collect();
     // "Before the crash, it had stopped."
-    let inner =
-        words.iter().any(|word| *word == "before") && words.iter().take(3).any(|word| matches!(*word, "had" | "could"));
-    frame.joint == Some(Joint::Before) && frame.act() == Some(Act::Stop) && inner
+    let Some(before) = words.iter().position(|word| *word == "before") else { return false };
+    let had = words.iter().take(3).any(|word| matches!(*word, "had" | "could"));
+    let moves = !matches!(frame.act(), None | Some(Act::Hold | Act::Slow | Act::Leave)) && !frame.is_contact();
+    let inner = frame.joint == Some(Joint::Before) && before < BEFORE_WITHIN && frame.form != Form::Ing;
+    if !moves || !inner {
+        return false;
+    }
+    let waits = |other: &Frame| {
+        let stops = matches!(other.act(), Some(Act::Stop | Act::Slow | Act::Hold)) || other.sense == Sense::Yield;
+        stops && other.sentence == frame.sentence && other.who == frame.who && other.joint != frame.joint
+    };
+    let stops = frame.act() == Some(Act::Stop);
+    had || !stops && frame.who.is_some() && story.frames.iter().any(|other| waits(other))
 }
+
+/// "before the AV had" stands so near before its verb. [tokens]
+const BEFORE_WITHIN: usize = 6;
 
 /// "stopped behind it before rolling forward and bumping it": so it did.
 fn goes_on_to_hit(story: &Story, number: usize) -> bool {

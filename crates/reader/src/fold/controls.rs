@@ -86,6 +86,7 @@ pub(super) fn controls(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<Control>
         }
     }
     if actor == SUBJECT {
+        had_a_light(reading, &mut all);
         of_that_queue(reading, &mut all, turned_green.map(|(state, ..)| state));
         if turned_green.is_none() {
             told_alone(reading, &mut all);
@@ -125,6 +126,28 @@ pub(super) fn in_its_queue(reading: &Reading<'_>, number: usize, end: usize) -> 
 fn of_the_contact(reading: &Reading<'_>, number: usize, end: usize) -> usize {
     let frames = &reading.story.frames;
     frames[number + 1..].iter().find(|next| next.first > frames[number].first).map_or(end, |next| end.min(next.first))
+}
+
+/// "The AV had a green light", "With a green light, it was driving": told in no clause of what it does.
+fn had_a_light(reading: &Reading<'_>, all: &mut Vec<Fact<Control>>) {
+    let story = &reading.story;
+    let word = |at: usize| story.tokens.get(at).map_or("", |token| token.text.as_str());
+    let until = reading.until().min(story.tokens.len());
+    for at in 1..until {
+        let named_here =
+            matches!(word(at + 1), "a" | "the" | "its").then(|| named(&[word(at + 2), word(at + 3), word(at + 4)]));
+        let Some(Some((device, state, length))) = named_here else { continue };
+        let before = (at.saturating_sub(2)..at).map(word).collect::<Vec<_>>();
+        let had =
+            matches!(word(at), "had" | "having") && before.iter().any(|word| matches!(*word, "av" | "it" | "which"));
+        let sentence = story.sentences.iter().position(|sentence| (sentence.first..sentence.end).contains(&at));
+        let next = story.frames.iter().find(|frame| frame.first > at && Some(frame.sentence) == sentence);
+        let fronted = word(at) == "with" && sentence.is_some_and(|sentence| story.sentences[sentence].first == at);
+        let own = next.is_some_and(|next| next.who == Some(SUBJECT)) && (fronted || had);
+        if own && all.iter().all(|known| known.value.device != device) {
+            all.push(reading.told(Control { device, state, obeyed: None }, at + 2, at + 2 + length));
+        }
+    }
 }
 
 /// "Traffic had queued at a red light, and the AV was standing in that line": the light of the line is its own.
@@ -245,7 +268,16 @@ pub(super) fn shown(
     if !matches!(word(at), "light" | "signal" | "lights" | "signals") || other {
         return None;
     }
-    let colour = (at + 1..end.min(at + COLOUR_WITHIN)).find(|&at| !BETWEEN.contains(&word(at)))?;
+    // "the light at Birch Street was red".
+    let street = |at: usize| {
+        tokens[at].capital
+            || word(at).contains("xxx")
+            || matches!(
+                word(at),
+                "street" | "avenue" | "road" | "drive" | "boulevard" | "ahead" | "there" | "on" | "of"
+            )
+    };
+    let colour = (at + 1..end.min(at + COLOUR_WITHIN)).find(|&at| !BETWEEN.contains(&word(at)) && !street(at))?;
     let state = match word(colour) {
         "red" => SignalState::Red,
         "green" => SignalState::Green,
@@ -294,6 +326,11 @@ fn named(words: &[&str]) -> Option<(ControlDevice, Option<SignalState>, usize)> 
             ) =>
         {
             (ControlDevice::Signal, None, 3)
+        }
+        ["at" | "for", "the", "sign", rest @ ..]
+            if !matches!(rest.first(), Some(&("pole" | "post" | "company" | "shop"))) =>
+        {
+            (ControlDevice::StopSign, None, 3)
         }
         ["stop", "at" | "for", "the", "sign", ..] => (ControlDevice::StopSign, None, 4),
         ["stop" | "sign", "controlled", ..] => (ControlDevice::StopSign, None, 2),

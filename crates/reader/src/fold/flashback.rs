@@ -95,6 +95,9 @@ fn tells_the_crash(reading: &Reading<'_>, sentence: usize) -> bool {
 /// "An AV operating in Oakland was hit by a van. It stood at a light": of the headline, where it is in service.
 fn is_where_it_operates(reading: &Reading<'_>, number: usize) -> bool {
     let frame = &reading.story.frames[number];
+    if is_only_a_mode(reading, number) {
+        return true;
+    }
     let words = &reading.story.tokens[frame.first..(frame.first + 3).min(reading.story.tokens.len())];
     let operates =
         words[0].text == "operating" && words.iter().any(|token| token.text == "in") && frame.form == Form::Ing;
@@ -106,6 +109,26 @@ fn is_where_it_operates(reading: &Reading<'_>, number: usize) -> bool {
         && words.last().is_some_and(|token| token.capital)
         && tells_the_crash(reading, frame.sentence)
         && reading.before(SUBJECT).any(later)
+}
+
+/// "The AV, operating autonomously, was stopped at a light": who drives it, and no way that it came.
+fn is_only_a_mode(reading: &Reading<'_>, number: usize) -> bool {
+    let (frames, tokens) = (&reading.story.frames, &reading.story.tokens);
+    let frame = &frames[number];
+    let operates = ["operat", "driving", "driven"].iter().any(|stem| tokens[frame.first].text.starts_with(stem));
+    if frame.who != Some(SUBJECT) || frame.act() != Some(Act::Follow) || !operates || frame.heading.is_some() {
+        return false;
+    }
+    let mut own = reading.before(SUBJECT).skip_while(|(other, _)| *other <= number).map(|(_, other)| other);
+    let Some(next) = own.find(|other| other.act().is_some() && other.happened()) else { return false };
+    let between: Vec<&str> =
+        tokens[frame.first..next.first.max(frame.first)].iter().map(|token| token.text.as_str()).collect();
+    let mode = between.iter().take(6).any(|word| {
+        ["autonom", "manual", "itself", "supervis", "driverless"].iter().any(|stem| word.starts_with(stem))
+    });
+    let way =
+        between.iter().any(|word| matches!(*word, "on" | "along" | "lane" | "toward" | "through" | "street" | "road"));
+    next.act() == Some(Act::Hold) && next.sentence == frame.sentence && mode && !way
 }
 
 /// "It rolled back into a coupe. It was parked on a hill. It rolled back until it met the coupe": the headline tells an act that the story

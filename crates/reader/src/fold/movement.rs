@@ -354,7 +354,16 @@ fn movement(reading: &Reading<'_>, party: &Party, column: Option<Movement>, name
         {
             best = None;
         }
+        // "turned left and kept going": with its turn.
+        let keeps_on =
+            ["kept", "keep", "continu", "carr", "went on"].iter().any(|stem| words_of(fact).starts_with(stem))
+                && frame_of(fact).is_some_and(|frame| {
+                    let turned = |other: &ActFact| other.act == Act::Turn && other.step < fact.step;
+                    let turn = party.acts.iter().rev().find(|other| turned(other)).and_then(frame_of);
+                    turn.is_some_and(|turn| turn.sentence == frame.sentence)
+                });
         if fact.act == Act::Follow
+            && !keeps_on
             && best.as_ref().is_some_and(|(_, known, source)| {
                 matches!(known, Movement::LeftTurn | Movement::RightTurn)
                     && !(words_of(fact).starts_with("approach") && words(source).starts_with("turning"))

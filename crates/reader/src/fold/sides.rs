@@ -19,16 +19,29 @@ pub(super) fn side_of(reading: &Reading<'_>, actor: Actor, number: usize, act: A
     };
     let changes = act == Act::LaneChange;
     let entered = || if changes { side_of_lane_entered(reading, frame) } else { None };
-    let signalled = || if moves_over(act) { side_signalled(reading, frame) } else { None };
+    let signalled = || if moves_over(act) || act == Act::Turn { side_signalled(reading, frame) } else { None };
     let goes_on = || if changes { side_as_before(reading, number) } else { None };
     let passes = || if changes { side_of_pass(reading, number) } else { None };
     let side = if sided(act) { told().or_else(entered).or_else(signalled) } else { None };
     let kerb = || if changes { away_from_the_kerb(reading, actor, frame) } else { None };
     let meant = || if changes { as_signaled(reading, actor, frame) } else { None };
     let side = side.or_else(goes_on).or_else(passes).or_else(meant).or_else(kerb);
-    side.or_else(|| into_turn_lane(reading, actor, frame, act))
+    let turn_meant = || if act == Act::Turn { side_meant(reading, number) } else { None };
+    side.or_else(turn_meant)
+        .or_else(|| into_turn_lane(reading, actor, frame, act))
         .or_else(|| if act == Act::Turn { turn_lane() } else { None })
         .or_else(|| turned_by_column(reading, actor, act))
+}
+
+/// "slowed to turn left. As it began this turn, ...": to the side of the turn that was meant or begun before.
+fn side_meant(reading: &Reading<'_>, number: usize) -> Option<LeftRight> {
+    let frames = &reading.story.frames;
+    let frame = &frames[number];
+    let turns = |other: &&Frame| other.who == frame.who && other.act() == Some(Act::Turn) && !other.negated;
+    let last = frames[..number].iter().rfind(turns)?;
+    // Who comes out of a lot turns onto the road by that.
+    let out = |other: &Frame| other.who == frame.who && (other.act() == Some(Act::PullOut) || other.out_of.is_some());
+    last.side.filter(|_| frame.sentence <= last.sentence + 2 && !frames[..number].iter().any(out))
 }
 
 /// Acts that lead over to a side of the way.

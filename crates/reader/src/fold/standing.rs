@@ -7,7 +7,7 @@ use super::speeds::is_of_last_contact;
 use super::{Reading, flashback, nominal};
 use crate::chunk::Joint;
 use crate::frame::Frame;
-use crate::lexicon::{Form, Lexicon, Progress, Relation, Sense};
+use crate::lexicon::{Form, Lexicon, Part, Progress, Relation, Sense};
 use crate::token::Token;
 use crate::world::{Actor, SUBJECT};
 use recrash_model::account::{Act, ContactState, Fact, Kind, KindGroup, SignalState, StandReason, Standing};
@@ -119,6 +119,12 @@ impl Told {
         if rolls && self.state().is_some_and(|state| !state.stands()) {
             return;
         }
+        // "backed out and crossed the street, and its tail hit the AV": still backwards.
+        let goes_on = matches!(act, Act::Cross | Act::Follow | Act::Enter | Act::Turn);
+        let here = self.since.is_some_and(|(sentence, _)| sentence == frame.sentence);
+        if goes_on && here && self.state() == Some(ContactState::Reversing) && touches_with_rear(reading, frame) {
+            return;
+        }
         self.since = Some((frame.sentence, frame.clause));
         self.spoken = frame.end;
         if next.stands() {
@@ -210,6 +216,13 @@ impl Told {
         };
         self.standing = Some(Fact { value: how, source: reading.of(frame) });
     }
+}
+
+/// Whether who does this touches the other with its rear, in the same sentence.
+fn touches_with_rear(reading: &Reading<'_>, frame: &Frame) -> bool {
+    let Some(contact) = reading.contacts.first.map(|number| &reading.story.frames[number]) else { return false };
+    let rear = contact.with.as_ref().is_some_and(|piece| piece.parts.contains(&Part::Rear));
+    rear && contact.who == frame.who && contact.sentence == frame.sentence
 }
 
 /// "was about to stop", "had not yet stopped": it moves.
@@ -367,7 +380,9 @@ fn because(reading: &Reading<'_>, number: usize) -> Option<Fact<StandReason>> {
     let other = |(_, next): &(usize, &Frame)| next.first > frame.first && !next.aside && next.who != frame.who;
     let here = |(_, next): &(usize, &Frame)| next.sentence == frame.sentence;
     let (at, next) = story.frames.iter().enumerate().skip(number + 1).take_while(here).find(other)?;
-    let why = |token: &Token| matches!(token.text.as_str(), "because" | "since" | "so");
+    // "as cars ahead were queued", and not "as a van hit it".
+    let queued = next.who.is_some_and(|who| story.world.actors[who].several) && !next.is_contact();
+    let why = |token: &Token| matches!(token.text.as_str(), "because" | "since" | "so") || queued && token.text == "as";
     let joint = (frame.end..next.first.max(frame.end)).find(|at| why(&story.tokens[*at]))?;
     let who = next.who.filter(|_| !next.is_contact())?;
     let (_, end) = reading.window(at);

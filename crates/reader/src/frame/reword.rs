@@ -198,12 +198,16 @@ fn hold_by_hand(tokens: &mut [Token]) {
         if tokens[at].text != "stop" || tokens[at + 1].text != "sign" {
             continue;
         }
-        let held = tokens[at.saturating_sub(4)..at].iter().any(|token| {
-            matches!(
-                token.text.as_str(),
-                "held" | "handheld" | "holding" | "holds" | "waving" | "carrying" | "wielding"
-            )
-        });
+        // "held at a stop sign" is no paddle.
+        let waits =
+            tokens[at.saturating_sub(2)..at].iter().any(|token| matches!(token.text.as_str(), "at" | "for" | "by"));
+        let held = !waits
+            && tokens[at.saturating_sub(4)..at].iter().any(|token| {
+                matches!(
+                    token.text.as_str(),
+                    "held" | "handheld" | "holding" | "holds" | "waving" | "carrying" | "wielding"
+                )
+            });
         let word = |ahead: usize| tokens.get(at + ahead).map_or("", |token| token.text.as_str());
         // "with a stop sign in hand", "raised a stop sign".
         let in_hand = word(2) == "in" && (word(3) == "hand" || matches!(word(3), "his" | "her") && word(4) == "hand");

@@ -12,7 +12,7 @@ use recrash_model::account::{Act, Compass, Kind, KindGroup, LeftRight};
 
 type Rule = fn(&Parser<'_>, &Spoken<'_>, &Carry) -> Option<Sense>;
 
-const SENSES: [Rule; 46] = [
+const SENSES: [Rule; 50] = [
     lowers_a_part,
     goes_up_or_down,
     goes_down_a_hill,
@@ -55,6 +55,10 @@ const SENSES: [Rule; 46] = [
     moves_a_little_aside,
     moves_over_a_little,
     handles_a_thing,
+    turns_the_wheel,
+    turns_in_its_seat,
+    does_not_fall,
+    is_denied_within,
     slides_over,
     comes_along,
     goes_over_the_bars,
@@ -629,7 +633,7 @@ fn moves_over_a_little(parser: &Parser<'_>, verb: &Spoken<'_>, _carry: &Carry) -
 }
 
 /// "took off their seatbelts", "turned on its hazard lights": nobody moved.
-fn handles_a_thing(parser: &Parser<'_>, verb: &Spoken<'_>, _carry: &Carry) -> Option<Sense> {
+fn handles_a_thing(parser: &Parser<'_>, verb: &Spoken<'_>, carry: &Carry) -> Option<Sense> {
     let end = verb.placed().end;
     let word = |at: usize| parser.tokens.get(at).map_or("", |token| token.text.as_str());
     let own = |at: usize| matches!(word(at), "its" | "his" | "her" | "their" | "the");
@@ -641,8 +645,69 @@ fn handles_a_thing(parser: &Parser<'_>, verb: &Spoken<'_>, _carry: &Carry) -> Op
     let takes = verb.sense == Sense::Act(Act::SetOff)
         && word(end - 1) == "off"
         && ["tak", "took"].iter().any(|stem| verb.word(parser).starts_with(stem));
-    let turns = verb.sense == Sense::Act(Act::Turn) && matches!(word(end), "on" | "off") && own(end + 1);
-    (takes && own(end) || turns && (end + 2..end + 6).any(lamp)).then_some(Sense::Other)
+    let turning = matches!(verb.sense, Sense::Act(Act::Turn) | Sense::Sided(Act::Turn, _))
+        && verb.word(parser).starts_with("turn");
+    let turns = turning && matches!(word(end), "on" | "off") && own(end + 1);
+    // "turned its left blinker on", "turned its sensors toward it".
+    let first = verb.placed().first;
+    let thing = |at: usize| {
+        lamp(at)
+            || ["hazard", "headlamp", "wiper", "engine", "attention", "sensor", "head"]
+                .iter()
+                .any(|stem| word(at).starts_with(stem))
+    };
+    let its = turning && own(first + 1) && (first + 2..first + 6).any(thing);
+    // "The front wheels of a van were turned to the left."
+    let wheel = turning && carry.be && carry.subject.as_ref().is_some_and(|subject| subject.piece.is_some());
+    (takes && own(end) || turns && (end + 2..end + 6).any(lamp) || its || wheel).then_some(Sense::Other)
+}
+
+/// "turned the steering wheel left": steered, and no corner.
+fn turns_the_wheel(parser: &Parser<'_>, verb: &Spoken<'_>, _carry: &Carry) -> Option<Sense> {
+    let Sense::Sided(Act::Turn, side) = verb.sense else { return None };
+    let words = &parser.tokens[verb.placed().first..verb.placed().end];
+    words
+        .iter()
+        .any(|token| matches!(token.text.as_str(), "wheel" | "steering"))
+        .then_some(Sense::Sided(Act::Swerve, side))
+}
+
+/// "A passenger turned around": nobody drives back.
+fn turns_in_its_seat(_parser: &Parser<'_>, verb: &Spoken<'_>, carry: &Carry) -> Option<Sense> {
+    let rider = carry.subject.as_ref().is_some_and(|subject| subject.person == Some(Occupant::Rider));
+    let closes = matches!(verb.sense, Sense::Act(Act::UTurn | Act::Turn | Act::Fall) | Sense::Sided(Act::Turn, _));
+    (rider && closes).then_some(Sense::Other)
+}
+
+/// "was descending a hill", "dropped to 10 mph", "fell behind a bus", "blew by": what drives does not fall. Who rides a bike may.
+fn does_not_fall(parser: &Parser<'_>, verb: &Spoken<'_>, carry: &Carry) -> Option<Sense> {
+    let subject = carry.subject.as_ref().filter(|_| verb.sense == Sense::Act(Act::Fall))?;
+    let known = parser.world.actors[subject.actor].kind;
+    let drives = subject.actor == SUBJECT || known.is_some_and(Kind::is_vehicle);
+    let word = verb.word(parser);
+    let end = verb.placed().end;
+    let next = parser.tokens.get(end).map_or("", |token| token.text.as_str());
+    if !drives || subject.piece.is_some() {
+        return None;
+    }
+    Some(match word {
+        _ if word.starts_with("descend") => Sense::Act(Act::Follow),
+        _ if (word.starts_with("drop") || matches!(word, "fell" | "falls" | "falling"))
+            && matches!(next, "to" | "behind") =>
+        {
+            Sense::Act(Act::Slow)
+        }
+        _ if word.starts_with("bl") && matches!(next, "by" | "past") => Sense::Act(Act::Pass),
+        _ if word == "closing" && matches!(next, "fast" | "quickly" | "rapidly" | "on" | "in") => Sense::Approach,
+        _ => return None,
+    })
+}
+
+/// "drove past a stop sign without stopping": the verb before has said it.
+fn is_denied_within(parser: &Parser<'_>, verb: &Spoken<'_>, carry: &Carry) -> Option<Sense> {
+    let before = verb.placed().first.checked_sub(1).map_or("", |at| parser.tokens[at].text.as_str());
+    let ran = matches!(verb.chunk_before(), Some(Chunk::Verb(Sense::Act(Act::RunStop | Act::RunRed), _)));
+    (before == "without" && ran && !carry.negated && verb.form == Form::Ing).then_some(Sense::Other)
 }
 
 /// "slid into its lane", of no wet road: over.

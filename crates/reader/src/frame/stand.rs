@@ -14,6 +14,7 @@ pub(super) fn apply(tokens: &mut [Token]) {
         come_before(tokens, at);
         give_a_push(tokens, at);
         without_a_stop(tokens, at);
+        does_not_obey(tokens, at);
         on_green(tokens, at);
         with_the_light(tokens, at);
     }
@@ -265,9 +266,15 @@ fn on_green(tokens: &mut [Token], at: usize) {
         // "drove in on a green light" names the light itself.
         "on" | "at" if whole && (light == 0 || fronted) && (word(0) == "on" || word(1) == "the") => {
             put(tokens, at, at + end, "completely");
-            let turned = if fronted { "turned" } else { "was" };
-            turned.clone_into(&mut tokens[at + article].text);
-            "green".clone_into(&mut tokens[at + article + 1].text);
+            if light > 0 && article > 0 {
+                // "the light was green" names it.
+                for (token, new) in tokens[at..].iter_mut().zip(["light", "was", "green"]) {
+                    new.clone_into(&mut token.text);
+                }
+            } else {
+                "was".clone_into(&mut tokens[at + article].text);
+                "green".clone_into(&mut tokens[at + article + 1].text);
+            }
         }
         "got" | "gets" | "given" | "received" if whole && article > 0 => {
             put(tokens, at, at + end, "completely");
@@ -298,5 +305,13 @@ fn with_the_light(tokens: &mut [Token], at: usize) {
         "was".clone_into(&mut tokens[was].text);
     } else if light(at) && word(tokens, at + 1) == "being" && colour(at + 2) {
         "was".clone_into(&mut tokens[at + 1].text);
+    }
+}
+
+/// "did not obey a red light": disobeyed it.
+fn does_not_obey(tokens: &mut [Token], at: usize) {
+    let obeys = matches!(word(tokens, at + 2), "obey" | "heed" | "observe");
+    if word(tokens, at) == "did" && word(tokens, at + 1) == "not" && obeys {
+        put(tokens, at, at + 3, "disobeyed");
     }
 }
