@@ -450,7 +450,8 @@ impl Chunker<'_> {
     /// "went back to the left", "came back over": to where it had been.
     fn comes_back(&self, at: usize, behind: usize) -> bool {
         const GOES: [&str; 15] = [
-            "go", "went", "gone", "com", "cam", "mov", "drift", "eas", "driv", "drov", "travel", "settl", "start", "drop", "fell",
+            "go", "went", "gone", "com", "cam", "mov", "drift", "eas", "driv", "drov", "travel", "settl", "start",
+            "drop", "fell",
         ];
         GOES.iter().any(|stem| self.text(at).starts_with(stem))
             && matches!(

@@ -57,7 +57,7 @@ fn is_before_it(story: &Story, number: usize) -> bool {
         stops && other.sentence == frame.sentence && other.who == frame.who && other.joint != frame.joint
     };
     let stops = frame.act() == Some(Act::Stop);
-    had || !stops && frame.who.is_some() && story.frames.iter().any(|other| waits(other))
+    had || !stops && frame.who.is_some() && story.frames.iter().any(waits)
 }
 
 /// "before the AV had" stands so near before its verb. [tokens]

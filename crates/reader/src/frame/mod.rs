@@ -4,6 +4,7 @@ mod adverbs;
 mod attach;
 mod build;
 mod doors;
+mod handled;
 mod joint;
 mod likewise;
 mod maneuver;

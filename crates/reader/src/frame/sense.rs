@@ -2,6 +2,10 @@
 //!
 //! A new rule goes into [`SENSES`]; each sees what the ones before it made of the verb.
 
+use super::handled::{
+    comes_along, does_not_fall, drops_riders_off, goes_over_the_bars, handles_a_thing, is_closed, is_of_an_alley,
+    launches_another, turns_in_its_seat, turns_out_to_be, turns_the_wheel,
+};
 use super::parser::{Carry, Parser};
 use super::row::{Spoken, single};
 use crate::chunk::Chunk;
@@ -309,9 +313,9 @@ fn goes_along(parser: &Parser<'_>, verb: &Spoken<'_>) -> bool {
     let lane = |word: &&str| matches!(*word, "lane" | "lanes" | "lines" | "boundaries" | "markings" | "path");
     let edge = |word: &&str| matches!(*word, "curb" | "edge" | "side" | "shoulder" | "right" | "left");
     match words.first() {
-        Some(&("in" | "within" | "inside")) => words.iter().skip(1).take(4).any(|word| lane(word)),
-        Some(&("to" | "by" | "along" | "near" | "beside")) => words.iter().skip(1).take(3).any(|word| edge(word)),
-        Some(&"close") => words.iter().skip(2).take(3).any(|word| edge(word)),
+        Some(&("in" | "within" | "inside")) => words.iter().skip(1).take(4).any(lane),
+        Some(&("to" | "by" | "along" | "near" | "beside")) => words.iter().skip(1).take(3).any(&edge),
+        Some(&"close") => words.iter().skip(2).take(3).any(edge),
         Some(&"on") => words.get(1) == Some(&"course"),
         _ => false,
     }
@@ -538,49 +542,6 @@ fn swings_over(parser: &Parser<'_>, verb: &Spoken<'_>, _carry: &Carry) -> Option
     (swings && lane).then_some(Sense::Sided(Act::Drift, side))
 }
 
-/// "the lanes were closed", "a gate that was closed": it had been, and nothing comes down.
-fn is_closed(parser: &Parser<'_>, verb: &Spoken<'_>, carry: &Carry) -> Option<Sense> {
-    let closed = verb.sense == Sense::Act(Act::Fall) && verb.word(parser) == "closed" && single(verb.placed());
-    let next = parser.tokens.get(verb.placed().end).map_or("", |token| token.text.as_str());
-    let comes_down = matches!(next, "by" | "on" | "onto" | "upon" | "as" | "while" | "behind" | "against");
-    // "It closed its doors."
-    let behind = parser.tokens[verb.placed().end..].iter().take(5).map(|token| token.text.as_str());
-    let own =
-        matches!(next, "its" | "his" | "her" | "their") && behind.into_iter().any(|word| word.starts_with("door"));
-    (closed && (carry.be && !comes_down || own)).then_some(Sense::Other)
-}
-
-/// "launched it into its path", "the chair was launched": pushed.
-fn launches_another(parser: &Parser<'_>, verb: &Spoken<'_>, carry: &Carry) -> Option<Sense> {
-    let launches = verb.sense == Sense::Act(Act::SetOff) && verb.word(parser).starts_with("launch");
-    let object = matches!(verb.next(), Some(Chunk::Noun(_) | Chunk::Pronoun));
-    (launches && single(verb.placed()) && (object || carry.be && verb.form == Form::Past)).then_some(Sense::Push)
-}
-
-/// "was dropping off a passenger" stands; "having dropped off its riders": nothing fell.
-fn drops_riders_off(parser: &Parser<'_>, verb: &Spoken<'_>, carry: &Carry) -> Option<Sense> {
-    const LETS_OFF: [&str; 8] = ["drop", "pick", "let", "load", "unload", "collect", "discharg", "board"];
-    let drops = matches!(verb.sense, Sense::Act(Act::Fall) | Sense::Other | Sense::Yield)
-        && LETS_OFF.iter().any(|stem| verb.word(parser).starts_with(stem));
-    let drops = drops && (verb.sense == Sense::Act(Act::Fall) || carry.be && verb.form == Form::Ing);
-    let rider =
-        |chunk: &Chunk| matches!(chunk, Chunk::Noun(noun) if matches!(noun.occupant, Some((Occupant::Rider, _))));
-    let named = |token: &Token| ["passenger", "rider", "customer"].iter().any(|stem| token.text.starts_with(stem));
-    let within = &parser.tokens[verb.placed().first..verb.placed().end];
-    let riders = within.iter().any(named) || verb.all[verb.at + 1..].iter().take(2).any(|placed| rider(&placed.chunk));
-    let stands = carry.be && verb.form == Form::Ing;
-    (drops && riders).then_some(if stands { Sense::Act(Act::Hold) } else { Sense::Other })
-}
-
-/// "an object that turned out to be a mattress".
-fn turns_out_to_be(parser: &Parser<'_>, verb: &Spoken<'_>, _carry: &Carry) -> Option<Sense> {
-    let behind = &parser.tokens[verb.placed().first + 1..];
-    let words: Vec<&str> = behind.iter().take(5).map(|token| token.text.as_str()).collect();
-    let be =
-        words.first() == Some(&"out") && words.windows(2).any(|pair| pair == ["to", "be"] || pair == ["to", "have"]);
-    (matches!(verb.sense, Sense::Act(Act::Turn)) && be).then_some(Sense::Other)
-}
-
 /// "failed to stay within its lane": it came out of it.
 fn leaves_its_lane(parser: &Parser<'_>, verb: &Spoken<'_>, carry: &Carry) -> Option<Sense> {
     let stays = ["remain", "stay", "keep"].iter().any(|stem| verb.word(parser).starts_with(stem));
@@ -632,77 +593,6 @@ fn moves_over_a_little(parser: &Parser<'_>, verb: &Spoken<'_>, _carry: &Carry) -
     (moves && (within || !lane && (little || room))).then_some(Sense::Act(Act::Drift))
 }
 
-/// "took off their seatbelts", "turned on its hazard lights": nobody moved.
-fn handles_a_thing(parser: &Parser<'_>, verb: &Spoken<'_>, carry: &Carry) -> Option<Sense> {
-    let end = verb.placed().end;
-    let word = |at: usize| parser.tokens.get(at).map_or("", |token| token.text.as_str());
-    let own = |at: usize| matches!(word(at), "its" | "his" | "her" | "their" | "the");
-    let lamp = |at: usize| {
-        ["light", "signal", "lamp", "flasher", "blinker", "indicator", "siren"]
-            .iter()
-            .any(|stem| word(at).starts_with(stem))
-    };
-    let takes = verb.sense == Sense::Act(Act::SetOff)
-        && word(end - 1) == "off"
-        && ["tak", "took"].iter().any(|stem| verb.word(parser).starts_with(stem));
-    let turning = matches!(verb.sense, Sense::Act(Act::Turn) | Sense::Sided(Act::Turn, _))
-        && verb.word(parser).starts_with("turn");
-    let turns = turning && matches!(word(end), "on" | "off") && own(end + 1);
-    // "turned its left blinker on", "turned its sensors toward it".
-    let first = verb.placed().first;
-    let thing = |at: usize| {
-        lamp(at)
-            || ["hazard", "headlamp", "wiper", "engine", "attention", "sensor", "head"]
-                .iter()
-                .any(|stem| word(at).starts_with(stem))
-    };
-    let its = turning && own(first + 1) && (first + 2..first + 6).any(thing);
-    // "The front wheels of a van were turned to the left."
-    let wheel = turning && carry.be && carry.subject.as_ref().is_some_and(|subject| subject.piece.is_some());
-    (takes && own(end) || turns && (end + 2..end + 6).any(lamp) || its || wheel).then_some(Sense::Other)
-}
-
-/// "turned the steering wheel left": steered, and no corner.
-fn turns_the_wheel(parser: &Parser<'_>, verb: &Spoken<'_>, _carry: &Carry) -> Option<Sense> {
-    let Sense::Sided(Act::Turn, side) = verb.sense else { return None };
-    let words = &parser.tokens[verb.placed().first..verb.placed().end];
-    words
-        .iter()
-        .any(|token| matches!(token.text.as_str(), "wheel" | "steering"))
-        .then_some(Sense::Sided(Act::Swerve, side))
-}
-
-/// "A passenger turned around": nobody drives back.
-fn turns_in_its_seat(_parser: &Parser<'_>, verb: &Spoken<'_>, carry: &Carry) -> Option<Sense> {
-    let rider = carry.subject.as_ref().is_some_and(|subject| subject.person == Some(Occupant::Rider));
-    let closes = matches!(verb.sense, Sense::Act(Act::UTurn | Act::Turn | Act::Fall) | Sense::Sided(Act::Turn, _));
-    (rider && closes).then_some(Sense::Other)
-}
-
-/// "was descending a hill", "dropped to 10 mph", "fell behind a bus", "blew by": what drives does not fall. Who rides a bike may.
-fn does_not_fall(parser: &Parser<'_>, verb: &Spoken<'_>, carry: &Carry) -> Option<Sense> {
-    let subject = carry.subject.as_ref().filter(|_| verb.sense == Sense::Act(Act::Fall))?;
-    let known = parser.world.actors[subject.actor].kind;
-    let drives = subject.actor == SUBJECT || known.is_some_and(Kind::is_vehicle);
-    let word = verb.word(parser);
-    let end = verb.placed().end;
-    let next = parser.tokens.get(end).map_or("", |token| token.text.as_str());
-    if !drives || subject.piece.is_some() {
-        return None;
-    }
-    Some(match word {
-        _ if word.starts_with("descend") => Sense::Act(Act::Follow),
-        _ if (word.starts_with("drop") || matches!(word, "fell" | "falls" | "falling"))
-            && matches!(next, "to" | "behind") =>
-        {
-            Sense::Act(Act::Slow)
-        }
-        _ if word.starts_with("bl") && matches!(next, "by" | "past") => Sense::Act(Act::Pass),
-        _ if word == "closing" && matches!(next, "fast" | "quickly" | "rapidly" | "on" | "in") => Sense::Approach,
-        _ => return None,
-    })
-}
-
 /// "drove past a stop sign without stopping": the verb before has said it.
 fn is_denied_within(parser: &Parser<'_>, verb: &Spoken<'_>, carry: &Carry) -> Option<Sense> {
     let before = verb.placed().first.checked_sub(1).map_or("", |at| parser.tokens[at].text.as_str());
@@ -721,46 +611,4 @@ fn slides_over(parser: &Parser<'_>, verb: &Spoken<'_>, _carry: &Carry) -> Option
     let first = carry_first(parser, verb);
     let whole = parser.tokens[first..].iter().take_while(|token| token.text != ".");
     (slides && into && !whole.into_iter().any(slippery)).then_some(Sense::Act(Act::Drift))
-}
-
-/// "was coming down the hill", "was rolling north", of who drives or rides: it goes along. Only gates and arms come down.
-fn comes_along(parser: &Parser<'_>, verb: &Spoken<'_>, carry: &Carry) -> Option<Sense> {
-    let acts = carry.subject.as_ref().is_some_and(|subject| parser.world.actors[subject.actor].acts());
-    let end = verb.placed().end;
-    let within = parser.tokens[verb.placed().first..end].iter();
-    let down = verb.sense == Sense::Act(Act::Fall)
-        && within.clone().any(|token| token.text == "coming")
-        && within.clone().any(|token| token.text == "down");
-    let way = parser.tokens[end..].iter().take(4).any(|token| {
-        matches!(
-            token.text.as_str(),
-            "hill" | "street" | "road" | "slope" | "lane" | "block" | "avenue" | "alley" | "ramp"
-        )
-    });
-    let rolls = verb.sense == Sense::Act(Act::Roll) && matches!(verb.next(), Some(Chunk::Compass(_)));
-    (acts && (down && way || rolls && single(verb.placed()))).then_some(Sense::Act(Act::Follow))
-}
-
-/// "an alley running between two streets": a road does not drive.
-fn is_of_an_alley(parser: &Parser<'_>, verb: &Spoken<'_>, _carry: &Carry) -> Option<Sense> {
-    let before = verb.placed().first.checked_sub(1).map_or("", |at| parser.tokens[at].text.as_str());
-    let road =
-        matches!(before, "alley" | "alleyway" | "street" | "road" | "roadway" | "lane" | "path" | "driveway" | "track");
-    let runs = matches!(verb.word(parser), "running" | "leading" | "going" | "heading");
-    let way = matches!(verb.next(), Some(Chunk::Preposition(_) | Chunk::Compass(_) | Chunk::Relation(_) | Chunk::Word));
-    (road && runs && way && verb.sense == Sense::Act(Act::Follow) && !carry_is_of(verb)).then_some(Sense::Other)
-}
-
-/// Whether a comma or a verb of being stands right before a verb.
-fn carry_is_of(verb: &Spoken<'_>) -> bool {
-    matches!(verb.chunk_before(), Some(Chunk::Comma | Chunk::Be | Chunk::Joint(_)))
-}
-
-/// "went over the handlebars".
-fn goes_over_the_bars(parser: &Parser<'_>, verb: &Spoken<'_>, _carry: &Carry) -> Option<Sense> {
-    let goes = matches!(verb.word(parser), "went" | "going" | "go" | "flew" | "pitched");
-    let behind = parser.tokens[verb.placed().first..].iter().skip(1).take(4).map(|token| token.text.as_str());
-    let words: Vec<&str> = behind.collect();
-    let over = words.first() == Some(&"over") && words.iter().any(|word| word.starts_with("handlebar"));
-    (goes && over && matches!(verb.sense, Sense::Act(_))).then_some(Sense::Act(Act::Fall))
 }
