@@ -1,4 +1,4 @@
-//! What somebody does as another one did: "and so did the AV", "the van did likewise", "as was a bus beside it".
+//! What somebody does as another one did: "and so did the AV", "the van did likewise" or "followed suit", "as was a bus beside it".
 
 use super::Frame;
 use super::parser::Parser;
@@ -52,8 +52,12 @@ impl Parser<'_> {
         if matches!(word(at), "so" | "as") && does(at + 1) && noun(at + 2) && ends(at + 3) {
             return Some((at + 2, at + 2));
         }
-        let likewise = word(at + 2) == "likewise" || word(at + 2) == "the" && word(at + 3) == "same";
-        (noun(at) && word(at + 1) == "did" && likewise).then_some((at, at + 2))
+        // "a van behind it did likewise".
+        let placed = matches!(all.get(at + 1).map(|placed| &placed.chunk), Some(Chunk::Relation(_)))
+            && matches!(all.get(at + 2).map(|placed| &placed.chunk), Some(Chunk::Pronoun | Chunk::Noun(_)));
+        let did = at + 1 + if placed { 2 } else { 0 };
+        let likewise = word(did + 1) == "likewise" || word(did + 1) == "the" && word(did + 2) == "same";
+        (noun(at) && word(did) == "did" && likewise).then_some((at, did + 1))
     }
 
     /// Who is meant by a noun of this sentence.

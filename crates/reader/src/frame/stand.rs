@@ -15,6 +15,7 @@ pub(super) fn apply(tokens: &mut [Token]) {
         give_a_push(tokens, at);
         without_a_stop(tokens, at);
         does_not_obey(tokens, at);
+        follow_suit(tokens, at);
         on_green(tokens, at);
         with_the_light(tokens, at);
     }
@@ -305,6 +306,15 @@ fn with_the_light(tokens: &mut [Token], at: usize) {
         "was".clone_into(&mut tokens[was].text);
     } else if light(at) && word(tokens, at + 1) == "being" && colour(at + 2) {
         "was".clone_into(&mut tokens[at + 1].text);
+    }
+}
+
+/// "the AV followed suit": did likewise.
+fn follow_suit(tokens: &mut [Token], at: usize) {
+    if (word(tokens, at), word(tokens, at + 1)) == ("followed", "suit") {
+        for (token, new) in tokens[at..].iter_mut().zip(["did", "likewise"]) {
+            new.clone_into(&mut token.text);
+        }
     }
 }
 
