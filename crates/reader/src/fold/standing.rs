@@ -381,7 +381,8 @@ fn because(reading: &Reading<'_>, number: usize) -> Option<Fact<StandReason>> {
     let here = |(_, next): &(usize, &Frame)| next.sentence == frame.sentence;
     let (at, next) = story.frames.iter().enumerate().skip(number + 1).take_while(here).find(other)?;
     // "as cars ahead were queued", and not "as a van hit it".
-    let queued = next.who.is_some_and(|who| story.world.actors[who].several) && !next.is_contact();
+    let stands = matches!(next.act(), Some(Act::Stop | Act::Hold)) && next.happened();
+    let queued = stands && next.who.is_some_and(|who| story.world.actors[who].several);
     let why = |token: &Token| matches!(token.text.as_str(), "because" | "since" | "so") || queued && token.text == "as";
     let joint = (frame.end..next.first.max(frame.end)).find(|at| why(&story.tokens[*at]))?;
     let who = next.who.filter(|_| !next.is_contact())?;
