@@ -418,6 +418,8 @@ impl Chunker<'_> {
             "the" if matches!(self.text(at + 1), "latter" | "former") && self.text(at + 2) != "'s" => {
                 return (Some(Chunk::Pronoun), 2);
             }
+            // "the two drove on".
+            "the" if self.text(at + 1) == "two" && self.does_at_once(at + 2) => return (Some(Chunk::Pronoun), 2),
             // "Both were northbound".
             "both" if matches!(self.text(at + 1), "were" | "are" | "had") || self.does_at_once(at + 1) => {
                 Chunk::Pronoun
@@ -435,6 +437,9 @@ impl Chunker<'_> {
             "no" if (self.text(at - 1), self.text(at + 1)) == ("that", "part") => Chunk::Not,
             "not" | "never" | "didn" | "wasn" | "couldn" | "without" | "unable" | "nor" | "neither" | "avoid"
             | "avoiding" | "avoided" => Chunk::Not,
+            "failed" if matches!(self.text(at.saturating_sub(1)), "had" | "brakes" | "engine" | "steering") => {
+                Chunk::Word
+            }
             "fail" | "failed" | "failing" | "fails" | "refused" | "omitted" | "neglected" => Chunk::Not,
             "left" | "leftward" | "leftwards" => Chunk::Side(LeftRight::Left),
             "right" | "rightward" | "rightwards" => Chunk::Side(LeftRight::Right),

@@ -481,6 +481,26 @@ impl Chunker<'_> {
         self.finish(noun, first, at)
     }
 
+    /// "in Denver, Colorado", "near Lake Tahoe", "at the Civic Center": written large, behind a place word or among other capitals that are no make.
+    fn is_a_town(&self, at: usize) -> bool {
+        let Some(before) = at.checked_sub(1).filter(|before| *before >= self.first && self.tokens[at].capital) else {
+            return false;
+        };
+        let unknown = |at: usize| {
+            let token = self
+                .tokens
+                .get(at)
+                .filter(|token| token.capital && token.kind == TokenKind::Word && token.text.len() > 2);
+            token.is_some_and(|_| self.lexicon.longest(self.tokens, at, |_| true).is_none())
+                && !self.lexicon.is_make(self.text(at))
+        };
+        let town = self.text(before) == "," && before > self.first && unknown(before - 1);
+        let there = matches!(self.text(before), "in" | "at" | "near" | "outside" | "around");
+        let named = unknown(before) && !DETERMINERS.contains(&self.text(before));
+        let place = PLACES.contains(&self.text(at + 1)) && self.tokens.get(at + 1).is_some_and(|next| next.capital);
+        town || there || named || place
+    }
+
     /// "the Bayside International Airport": a make that stands here is of the name of a place.
     fn names_a_place(&self, at: usize) -> bool {
         let capital = |at: usize| self.tokens.get(at).is_some_and(|token| token.capital);
@@ -556,6 +576,9 @@ impl Chunker<'_> {
             && (self.text(at + 1).starts_with("assist")
                 || at > 0 && matches!(self.tokens[at - 1].text.as_str(), "drive" | "highway"));
         if model && found.length == 1 && (!self.tokens[at].capital || of_company) {
+            return None;
+        }
+        if (model || kind == Some(Kind::Animal)) && found.length == 1 && self.is_a_town(at) {
             return None;
         }
         if matches!(self.text(at), "sign") && at > self.first && matches!(self.text(at - 1), "stop" | "yield") {

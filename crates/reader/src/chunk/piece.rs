@@ -295,7 +295,9 @@ impl Chunker<'_> {
         let placed = piece.parts.iter().any(|part| *part != Part::Noun);
         let possessed = first > self.first && self.text(first - 1) == "'s" && placed;
         let owned = piece.owner.is_some() || piece.its;
-        let bare = placed && self.text(first) == "the" && self.ends_clause(*at);
+        // "a van whose front struck it".
+        let whose = placed && first > self.first && self.text(first - 1) == "whose";
+        let bare = whose || placed && self.text(first) == "the" && self.ends_clause(*at);
         let plain_noun = piece.parts == [Part::Noun] && !owned && !piece.door;
         let of_vehicles = matches!(
             self.text(at - 1),

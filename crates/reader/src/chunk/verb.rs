@@ -23,7 +23,8 @@ struct Candidate<'a> {
 }
 
 /// A phrase is no verb where one of these says so, whichever it is: their order does not matter.
-const NO_VERB: [fn(&Candidate<'_>) -> bool; 23] = [
+const NO_VERB: [fn(&Candidate<'_>) -> bool; 24] = [
+    |verb| verb.is_of_a_device(),
     |verb| verb.is_determined(),
     |verb| verb.is_described(),
     |verb| verb.is_turn_of_a_side(),
@@ -69,6 +70,10 @@ impl Candidate<'_> {
 
     /// Behind an article: "the stop", "a lane change".
     fn is_determined(&self) -> bool {
+        // "whose brakes had failed".
+        if self.word_before == "whose" && self.is_single() {
+            return true;
+        }
         let article = DETERMINERS.contains(&self.word_before) && !matches!(self.word_before, "that" | "this");
         article && (self.form == Form::Base || self.is_single())
     }
@@ -142,6 +147,14 @@ impl Candidate<'_> {
                     | "with"
                     | "had"
             )
+    }
+
+    /// "with its engine running", "its blinker going".
+    fn is_of_a_device(&self) -> bool {
+        let device =
+            matches!(self.word_before, "engine" | "motor" | "blinker" | "blinkers" | "lights" | "flashers" | "hazards")
+                || matches!(self.word_before, "signal" | "siren" | "sirens" | "wipers" | "radio" | "meter");
+        device && self.is_single() && matches!(self.word(0), "running" | "going" | "working")
     }
 
     /// "during the right turn".

@@ -223,7 +223,7 @@ impl Parser<'_> {
             self.tokens[placed.first..placed.end].iter().any(|token| matches!(token.text.as_str(), "its" | "'s"));
         // "From an alley on the left a van came".
         let indefinite = matches!(next, Some(Chunk::Noun(noun)) if noun.article == crate::chunk::Article::Indefinite);
-        let side = matches!(self.tokens[placed.end - 1].text.as_str(), "left" | "right" | "ahead" | "rear");
+        let side = matches!(self.tokens[placed.end - 1].text.as_str(), "left" | "right" | "ahead" | "rear" | "lane");
         let begins = indefinite && side && carry.frame.is_none() && carry.subject.is_none();
         let governs = governs && !possessed && !begins;
         // "drove straight ahead", "pulled ahead and": so it went, and nobody is there.
@@ -464,7 +464,7 @@ impl Parser<'_> {
                     let actor = carry.last.as_ref().map_or(SUBJECT, |last| last.actor);
                     self.world.actors[actor].heading.get_or_insert(stands);
                 }
-                None if carry.main.is_none() && !(from || onto || there) => {
+                None if carry.main.is_none() && !(from && bare || onto || there) => {
                     carry.lead_heading = carry.lead_heading.or(Some((stands, governed)));
                 }
                 None => {}
@@ -532,7 +532,8 @@ impl Parser<'_> {
         before.any(|before| before.who == taken.who && before.act() == Some(Act::Turn))
     }
 
-    pub(super) fn lane(&mut self, lane: LaneWord, placed: &Placed, carry: &mut Carry) {
+    pub(super) fn lane(&mut self, lane: LaneWord, placed: &Placed, carry: &mut Carry, next: Option<&Chunk>) {
+        let fronted = matches!(next, Some(Chunk::Noun(_) | Chunk::Pronoun | Chunk::Piece(_)));
         // "kept to the right lane": it is in it.
         let kept = carry.frame.is_some_and(|frame| {
             ["keep", "kept", "stay", "stick", "stuck"]
@@ -574,6 +575,10 @@ impl Parser<'_> {
         }
         let Some(frame) = carry.frame else {
             match &carry.subject {
+                // "and in the right lane a van": who is named next.
+                Some(_) if carry.fresh && fronted && matches!(preposition, Some("in" | "within" | "from")) => {
+                    carry.lead_lane = Some(stands);
+                }
                 Some(subject) => _ = self.world.actors[subject.actor].lane.get_or_insert(stands),
                 // "With it in the bus lane".
                 None if carry

@@ -87,7 +87,8 @@ fn does(tokens: &[Token], at: usize) -> Option<(usize, &'static str, bool)> {
         _ if word.ends_with("ed") => "ed",
         _ => return None,
     };
-    const DONE: [&str; 8] = ["undert", "effect", "conduct", "perform", "execut", "mak", "made", "complet"];
+    const DONE: [&str; 11] =
+        ["undert", "effect", "conduct", "perform", "execut", "mak", "made", "complet", "resum", "continu", "finish"];
     const BEGUN: [&str; 6] = ["commenc", "began", "beginn", "start", "initiat", "attempt"];
     let is = |stems: &[&str]| stems.iter().any(|stem| word.starts_with(stem));
     let out = word.starts_with("carr") && tokens.get(at + 1).is_some_and(|next| next.text == "out");
@@ -100,7 +101,8 @@ fn does(tokens: &[Token], at: usize) -> Option<(usize, &'static str, bool)> {
 
 /// "making a left turn" and the like are known: these are not.
 fn is_unknown(verb: &str, named: &Named, begins: bool) -> bool {
-    let rare = ["undert", "effect", "conduct", "carr"].iter().any(|stem| verb.starts_with(stem));
+    let rare =
+        ["undert", "effect", "conduct", "carr", "resum", "continu", "finish"].iter().any(|stem| verb.starts_with(stem));
     match named.does {
         Does::Turn => rare || verb.starts_with("commenc") || named.of_lanes && (begins || verb.starts_with("exec")),
         Does::ChangeLanes => rare || verb.starts_with("commenc") || named.of_lanes,

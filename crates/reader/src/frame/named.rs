@@ -121,7 +121,7 @@ impl Parser<'_> {
             );
         match before.chunk {
             Chunk::Word if matches!(word, "crossing" | "building" | "landing") => true,
-            Chunk::Word => !between && !(word.ends_with("ing") && !self.tokens[before.first].capital),
+            Chunk::Word => !between && (!word.ends_with("ing") || self.tokens[before.first].capital),
             Chunk::Spot(_) | Chunk::Lane(_) | Chunk::Compass(_) => true,
             _ => false,
         }
@@ -242,7 +242,7 @@ impl Parser<'_> {
         let known = &self.world.actors[actor];
         let of_main = carry.subject.as_ref().is_some_and(|subject| subject.actor == actor || subject.actor != SUBJECT);
         let new = known.mentions == 1;
-        let other = known.parked && !new && !carry.subject.as_ref().is_some_and(|subject| subject.actor == actor);
+        let other = known.parked && !new && carry.subject.as_ref().is_none_or(|subject| subject.actor != actor);
         let one = noun.article == Article::Definite && !noun.several && noun.occupant.is_none();
         let stands =
             called && plain && one && actor != SUBJECT && self.world.actors[SUBJECT].parked && of_main && !other;
@@ -329,6 +329,10 @@ impl Parser<'_> {
         {
             return false;
         }
+        // "As it drove around the AV, a coupe scraped it": who is named behind, since nobody drives around itself.
+        if self.is_before_its_noun(all, at, carry) {
+            return false;
+        }
         if self.stands_apart(all, at) {
             (carry.preposition, carry.relation) = (None, None);
         }
@@ -354,6 +358,24 @@ impl Parser<'_> {
         let last = self.frames.last().filter(|frame| carry.place && hits && frame.sentence == self.sentence)?;
         let thing = |actor: &Actor| *actor != SUBJECT && !self.world.actors[*actor].acts();
         if last.sense == Sense::Push { last.object.filter(thing) } else { last.who.filter(thing) }
+    }
+
+    /// Whether "it" in a clause in front cannot be the subject vehicle, which that clause names besides: "When it backed up toward the AV, a van".
+    fn is_before_its_noun(&self, all: &[Placed], at: usize, carry: &Carry) -> bool {
+        let fronted = carry.main.is_none() && carry.joint == Some(Joint::While) && carry.clause == 1 && carry.fresh;
+        let Some(comma) = all[at..].iter().position(|placed| matches!(placed.chunk, Chunk::Comma)) else {
+            return false;
+        };
+        let named =
+            all[at + 1..at + comma].iter().any(|placed| matches!(&placed.chunk, Chunk::Noun(noun) if noun.subject));
+        let behind = all[at + comma..].iter().find(|placed| !matches!(placed.chunk, Chunk::Comma | Chunk::Word));
+        let other = behind.is_some_and(|placed| match &placed.chunk {
+            Chunk::Noun(noun) => !noun.subject,
+            Chunk::Piece(piece) => piece.owner.as_ref().is_some_and(|owner| !owner.subject),
+            _ => false,
+        });
+        let it = self.tokens[all[at].first].text == "it";
+        fronted && named && other && it && self.its("it", carry) == SUBJECT
     }
 
     /// "A van struck it. Once it had stopped, the AV was hit": whom the sentence is about, named behind the comma.
@@ -407,6 +429,7 @@ impl Parser<'_> {
         let together = || all[at..].iter().any(|placed| self.tokens[placed.first].text == "together");
         let both = match self.tokens[all[at].first].text.as_str() {
             "both" => true,
+            "the" => self.tokens.get(all[at].first + 1).is_some_and(|next| next.text == "two"),
             "they" => together(),
             _ => false,
         };

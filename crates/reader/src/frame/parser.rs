@@ -210,7 +210,7 @@ impl Parser<'_> {
         let told = frames.iter().any(leads);
         let rear_ends = touch.sense == Sense::RearEnd && who == other;
         let known = &mut self.world.actors[other];
-        if !told && !(known.several || known.another) && known.mentions == 1 && known.kind.is_some_and(rides) {
+        if !(told || known.several || known.another) && known.mentions == 1 && known.kind.is_some_and(rides) {
             known.announced = true;
             if rear_ends {
                 known.place(Relation::Behind, self.sentence);
@@ -252,7 +252,7 @@ impl Parser<'_> {
                     Chunk::Lane(_) if carry.fresh && carry.preposition.is_none() && begins_its_verb(next) => {
                         (carry.stranger, carry.subject) = (true, None);
                     }
-                    Chunk::Lane(lane) => self.lane(*lane, placed, carry),
+                    Chunk::Lane(lane) => self.lane(*lane, placed, carry, next),
                     Chunk::Spot(spot) => self.spot(*spot, placed, carry),
                     Chunk::Preposition(word) => preposition(word, carry),
                     // "the corner of Oak Street and Elm Street": no clause begins.

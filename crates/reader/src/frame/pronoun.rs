@@ -115,6 +115,16 @@ impl Parser<'_> {
         let small = |placed: &&Placed| matches!(placed.chunk, Chunk::Be | Chunk::Word);
         let verb = at + 1 + all[at + 1..].iter().take(3).take_while(small).count();
         let Some(Chunk::Verb(sense, _)) = all.get(verb).map(|placed| &placed.chunk) else { return false };
+        // "struck its rear as it drove around the AV": nobody drives around itself.
+        let ends = |placed: &&Placed| !matches!(placed.chunk, Chunk::Comma | Chunk::Joint(_));
+        let itself = all[verb + 1..].iter().take_while(ends).any(|placed| match &placed.chunk {
+            Chunk::Noun(noun) => noun.subject,
+            Chunk::Piece(piece) => piece.owner.as_ref().is_some_and(|owner| owner.subject),
+            _ => false,
+        });
+        if itself {
+            return false;
+        }
         let words = &self.tokens[last.first..all[at].first];
         let behind = words.windows(2).any(|pair| pair[0].text == "from" && pair[1].text == "behind");
         let rear = last.on.as_ref().is_some_and(|piece| piece.parts.contains(&Part::Rear));

@@ -480,8 +480,8 @@ fn driven_on(tokens: &mut [Token]) {
         let on = tokens.get(end).is_some_and(|next| {
             matches!(
                 next.text.as_str(),
-                "forward" | "ahead" | "around" | "past" | "into" | "over" | "through" | "onto" | "toward"
-            )
+                "forward" | "ahead" | "around" | "past" | "into" | "through" | "onto" | "toward"
+            ) || next.text == "over" && *way != "moved"
         });
         if !(driven && on) {
             continue;

@@ -413,6 +413,24 @@ impl Parser<'_> {
         moves && plain && of && !place && at_once || runs && road && !way && at_once && verb.form == Form::Ing
     }
 
+    /// "A van struck it while turning", where it alone was told to turn: it does.
+    pub(super) fn was_turning(&self, verb: &Spoken<'_>, carry: &Carry) -> Option<Mention> {
+        let turns = verb.form == Form::Ing && matches!(verb.sense, Sense::Act(Act::Turn) | Sense::Sided(Act::Turn, _));
+        let inner = carry.joint == Some(Joint::While) && carry.fresh && !carry.be && turns;
+        let struck =
+            self.frames.last().filter(|frame| inner && frame.sentence == self.sentence && frame.is_contact())?;
+        let other = struck.who.filter(|who| *who != SUBJECT && struck.object == Some(SUBJECT))?;
+        let side = if let Sense::Sided(_, side) = verb.sense { Some(side) } else { None };
+        let turned = |who: Actor| {
+            self.frames.iter().any(|frame| {
+                let alike = side.is_none() || frame.side.is_none() || frame.side == side;
+                frame.who == Some(who) && frame.act() == Some(Act::Turn) && !frame.negated && alike
+            })
+        };
+        let own = turned(SUBJECT) && !turned(other);
+        own.then_some(Mention { actor: SUBJECT, piece: None, person: None, end: verb.placed().first })
+    }
+
     /// "struck it in passing", "hit its front in backing up": who strikes does.
     pub(super) fn did_so_in(&self, verb: &Spoken<'_>, carry: &Carry) -> Option<Mention> {
         let frame = carry.frame.map(|frame| &self.frames[frame]).filter(|frame| frame.is_contact() && !carry.be)?;

@@ -72,7 +72,7 @@ impl Parser<'_> {
         let meanwhile = self.did_so_in(&verb, carry);
         let while_struck = self.stood_when_struck(&verb, carry);
         let found = found || while_struck.is_some();
-        let beside = meanwhile.clone().or(while_struck).or(beside);
+        let beside = meanwhile.clone().or(while_struck).or_else(|| self.was_turning(&verb, carry)).or(beside);
         let who =
             beside.or_else(|| self.who_of(verb.sense, form, verb.placed(), carry, purpose, another_finite(all, at)));
         carry.reduced &= !finite;
@@ -115,9 +115,9 @@ impl Parser<'_> {
         }
         self.went_on_into(&frame, carry);
         self.where_to(&mut frame, &verb, carry);
+        let of_somebody = !(frame.passive || carry.stranger || unknown);
         let unnamed = frame.who.is_none()
-            && !frame.passive
-            && !(carry.stranger || unknown)
+            && of_somebody
             && !matches!(verb.sense, Sense::ContactMade | Sense::LightGreen | Sense::LightRed | Sense::LightYellow);
         let number = self.push(frame, carry);
         if unnamed || leading {
