@@ -72,6 +72,12 @@ impl Chunker<'_> {
                 self.further_parts(draft.at + 2, &mut draft);
                 if self.text(draft.at) == "of" { self.of_whom(draft)? } else { draft }
             }
+            // "a sensor on the roof of the AV", "the lidar on top of it".
+            "on" if draft.piece.parts == [Part::Noun] && self.on_top(draft.at + 1).is_some() => {
+                let at = self.on_top(draft.at + 1)?;
+                self.further_parts(at, &mut draft);
+                if self.text(draft.at) == "of" { self.of_whom(draft)? } else { draft }
+            }
             "on" if draft.nouns > 0 => {
                 self.on_the_side(&mut draft);
                 if matches!(self.text(draft.at), "of" | "on") { self.of_whom(draft)? } else { draft }
@@ -264,6 +270,12 @@ impl Chunker<'_> {
             return None;
         }
         Some(draft)
+    }
+
+    /// Where "the roof", "top" stands behind "on".
+    fn on_top(&self, at: usize) -> Option<usize> {
+        let at = at + usize::from(matches!(self.text(at), "the" | "its"));
+        matches!(self.part(at), Some((Part::Top, _))).then_some(at)
     }
 
     /// "right rear", "front left corner".

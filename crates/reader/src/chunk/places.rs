@@ -203,7 +203,8 @@ impl Chunker<'_> {
         });
         let end = end.unwrap_or(self.tokens.len().min(at + LONGEST_LANE_NAME));
         let has = |words: &[&str]| (at..end).any(|at| words.contains(&self.text(at)));
-        let pocket = matches!(self.text(end), "pocket" | "bay") && has(TURN);
+        let pocket = matches!(self.text(end), "pocket" | "bay") && has(TURN)
+            || self.text(end) == "track" && has(&["cycle", "bike", "bicycle"]);
         if !pocket && !matches!(self.text(end), "lane" | "lanes") {
             return None;
         }

@@ -711,6 +711,12 @@ impl Parser<'_> {
                     | Act::Accelerate
             )
         ) || taken.sense == Sense::Approach;
+        // "merged onto Elm Street out of a driveway": it pulled out.
+        let merges = taken.act() == Some(Act::LaneChange) && self.tokens[taken.first].text.starts_with("merg");
+        if merges && matches!(word, Some("out" | "from")) && matches!(spot, Spot::Driveway | Spot::Stall | Spot::Curb) {
+            (taken.sense, taken.out_of) = (Sense::Act(Act::PullOut), Some(spot));
+            return;
+        }
         let says_out = (taken.first..taken.end).any(|at| self.tokens[at].text == "out");
         let leaves = match word {
             Some("out") => moves || taken.sense == Sense::Other,

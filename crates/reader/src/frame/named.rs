@@ -491,7 +491,8 @@ impl Parser<'_> {
     fn was_inserted(&self, frame: usize) -> bool {
         let frame = &self.frames[frame];
         let word = |at: usize| self.tokens.get(at).map_or("", |token| token.text.as_str());
-        frame.is_contact() && frame.with.is_some() && word(frame.end) == "," && word(frame.end + 1) == "with"
+        let inserted = frame.with.is_some() && word(frame.end + 1) == "with" || word(frame.end + 1) == "at";
+        frame.is_contact() && inserted && word(frame.end) == ","
     }
 
     /// "a dolly attached to the back of the truck": what is told of it in the sentence is told of the truck.

@@ -114,18 +114,24 @@ pub(super) fn on_side_street(reading: &Reading<'_>, actor: Actor) -> bool {
         let sentence = reading.story.sentences[frame.sentence];
         let first = if (sentence.first..first).contains(&named) { named } else { first };
         let word = |at: usize| tokens.get(at).map_or("", |token| token.text.as_str());
-        (first..end).any(|at| {
-            let road = matches!(word(at + 1), "street" | "road" | "streets");
-            let crosses = matches!(word(at), "side" | "cross" | "crossing" | "intersecting" | "perpendicular");
-            // "the street on its left".
-            let there = matches!(word(at), "street" | "road")
-                && matches!(word(at + 1), "on" | "to")
-                && (at + 2..at + 4).any(|at| matches!(word(at), "left" | "right"));
-            // "from the perpendicular left of it".
-            let square = word(at) == "perpendicular" && matches!(word(at + 1), "left" | "right")
-                || matches!(word(at), "street" | "road") && word(at + 1) == "perpendicular";
-            crosses && road || there || square
-        })
+        // "a cross-street taxi", "a taxi in the cross traffic".
+        let own = reading.story.world.actors[actor].kind_tokens.map_or(first..first, |(from, to)| from..to);
+        let crossing =
+            |at: usize| matches!(word(at), "cross" | "intersecting") && matches!(word(at + 1), "street" | "traffic");
+        own.into_iter().any(crossing)
+            || (first..end).any(|at| {
+                let road = matches!(word(at + 1), "street" | "road" | "streets")
+                    || word(at) == "cross" && word(at + 1) == "traffic" && word(at - 1) == "the";
+                let crosses = matches!(word(at), "side" | "cross" | "crossing" | "intersecting" | "perpendicular");
+                // "the street on its left".
+                let there = matches!(word(at), "street" | "road")
+                    && matches!(word(at + 1), "on" | "to")
+                    && (at + 2..at + 4).any(|at| matches!(word(at), "left" | "right"));
+                // "from the perpendicular left of it".
+                let square = word(at) == "perpendicular" && matches!(word(at + 1), "left" | "right")
+                    || matches!(word(at), "street" | "road") && word(at + 1) == "perpendicular";
+                crosses && road || there || square
+            })
     })
 }
 

@@ -300,7 +300,7 @@ impl<'a> Case<'a> {
 
     /// "on the cross street to its left".
     fn on_a_side_street(&self) -> Told {
-        let side = self.side?;
+        let side = self.side.or(self.touched.filter(|_| !self.behind && !self.ahead))?;
         let there = on_side_street(self.reading, self.actor) && !self.did(Act::Pass);
         if there { self.across(side) } else { None }
     }
@@ -528,11 +528,20 @@ impl<'a> Case<'a> {
         let passed = passes_subject(self.reading, self.actor);
         let crossing = self.did(Act::Cross) && !passed
             || ran && (self.first_is_side() || self.side.is_none())
-            || self.frames().any(|(_, frame)| enters(frame) && sided(frame))
+            || self.frames().any(|(_, frame)| enters(frame) && (sided(frame) || self.comes_into_it(frame)))
             || self.frames().any(|(_, frame)| frame.sense == Sense::Approach && sided(frame)) && !self.did(Act::Pass)
             || self.comes_across()
             || on_side_street(self.reading, self.actor);
         if crossing { self.across(side) } else { None }
+    }
+
+    /// "A taxi from the right entered the intersection".
+    fn comes_into_it(&self, frame: &Frame) -> bool {
+        let sentence = self.reading.story.sentences[frame.sentence];
+        let words: Vec<&str> =
+            self.reading.story.tokens[sentence.first..sentence.end].iter().map(|token| token.text.as_str()).collect();
+        let from = words.windows(3).any(|row| matches!(row, ["from", "the" | "its", "left" | "right"]));
+        from && words.iter().any(|word| matches!(*word, "intersection" | "junction"))
     }
 
     /// "traveling from left to right", "came at a right angle from its left", "coming along the road from the right".

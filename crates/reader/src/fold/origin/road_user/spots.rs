@@ -26,9 +26,7 @@ impl Case<'_> {
         let side = self.side.or_else(|| if drives_out { of_road() } else { None }).or(self.touched);
         let origin = match frame.out_of? {
             Spot::Stall => self.out_of_a_stall(number),
-            Spot::SideStreet if self.side.is_some() => {
-                self.side.map_or(Origin::Opposite, |side| Origin::Cross { side })
-            }
+            Spot::SideStreet if side.is_some() => side.map_or(Origin::Opposite, |side| Origin::Cross { side }),
             Spot::Driveway | Spot::SideStreet => Origin::Driveway { side },
             Spot::Curb => Origin::Parked { side },
             Spot::Sidewalk => Origin::Sidewalk { side },
