@@ -7,6 +7,7 @@ mod places;
 mod verb;
 
 pub use noun::is_of_traffic;
+pub use piece::is_along_a_side;
 
 use crate::lexicon::{Adjective, Form, Found, Lexicon, Meaning, Occupant, Part, Relation, Sense};
 use crate::token::{Token, TokenKind};

@@ -181,6 +181,12 @@ impl Chunker<'_> {
         }
         let Some((part @ (Part::Front | Part::Rear), length)) = self.part(at + 2) else { return };
         let mut end = at + 2 + length;
+        // "the left side at the rear door", "near the front wheel": on the side all the same.
+        let inner =
+            (end..end + 3).take_while(|&at| self.tokens.get(at).is_some_and(|next| next.kind == TokenKind::Word));
+        if inner.into_iter().any(|at| is_along_a_side(self.text(at))) {
+            return;
+        }
         while let Some((Part::Noun, length)) = self.part(end) {
             end += length;
         }
@@ -360,4 +366,9 @@ impl Chunker<'_> {
         }
         Some((part, found.length))
     }
+}
+
+/// Whether a part stands along a side, and at no corner: "the rear door", "the front wheel".
+pub fn is_along_a_side(word: &str) -> bool {
+    matches!(word, "door" | "doors" | "wheel" | "wheels" | "tire" | "tires" | "window" | "axle" | "pillar")
 }

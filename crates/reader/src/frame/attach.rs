@@ -2,7 +2,7 @@
 
 use super::parser::{Carry, Parser};
 use super::sided;
-use crate::chunk::{Chunk, Piece, Placed, Spot};
+use crate::chunk::{Chunk, Piece, Placed, Spot, is_along_a_side};
 use crate::lexicon::{Form, Part, Relation, Sense};
 use crate::world::{Actor, SUBJECT};
 use recrash_model::account::{Act, Compass, Kind, KindGroup, LaneWord, LeftRight};
@@ -32,7 +32,11 @@ impl Parser<'_> {
             }
         }
         // "was hit on its left side, at the rear bumper": where on that side.
-        let near = touches && placed.first <= self.frames[frame].end + END_WITHIN;
+        let words = |from: usize, to: usize| self.tokens[from.min(to)..to].iter().map(|token| token.text.as_str());
+        let between = words(self.frames[frame].end, placed.first)
+            .all(|word| matches!(word, "," | "at" | "on" | "and" | "in" | "side"));
+        let inner = words(placed.first, placed.end).any(is_along_a_side);
+        let near = touches && between && !inner && placed.first <= self.frames[frame].end + END_WITHIN;
         let end: Vec<Part> =
             piece.parts.iter().copied().filter(|part| matches!(part, Part::Front | Part::Rear)).collect();
         if let Some(on) = self.frames[frame].on.as_mut().filter(|on| near && on.parts.len() == 1 && on.side().is_some())
