@@ -276,6 +276,8 @@ impl Parser<'_> {
             (carry.subject, carry.frame, carry.has_verb) = (Some(last), None, false);
             (carry.relative, carry.fresh, carry.governed) = (true, false, false);
             (carry.be, carry.to, carry.progress) = (false, false, None);
+            // "The impact pushed it into a van that was standing there": of the van.
+            carry.stranger &= at == 0 || !matches!(all[at - 1].chunk, Chunk::Noun(_));
         }
         false
     }
