@@ -3,7 +3,7 @@
 //! A new rule of English that says "here it is no verb" goes into [`NO_VERB`].
 
 use super::{Chunk, Chunker, DETERMINERS, Placed};
-use crate::lexicon::{Form, Found, Meaning, Relation, Sense};
+use crate::lexicon::{Form, Found, Meaning, Part, Relation, Sense};
 use crate::token::TokenKind;
 use recrash_model::account::{Act, KindGroup, LeftRight};
 
@@ -354,7 +354,11 @@ impl Candidate<'_> {
             && !self.chunker.noun(behind).is_some_and(|(noun, _)| {
                 noun.subject || noun.kind.is_some_and(|kind| kind.group() == KindGroup::Object)
             })
-            && self.chunker.piece(behind).is_none()
+            && self.chunker.piece(behind).is_none_or(|(piece, _)| {
+                // "rode up on the right side".
+                let side = |part: &Part| matches!(part, Part::Left | Part::Right);
+                piece.owner.is_none() && !piece.its && piece.parts.iter().all(side)
+            })
     }
 }
 

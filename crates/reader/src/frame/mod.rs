@@ -290,6 +290,10 @@ fn turns_as_meant(frames: &mut [Frame]) {
         if frame.sense != Sense::Act(Act::Turn) || frame.side.is_some() || !frame.happened() {
             continue;
         }
+        // "attempting to turn right while exiting a lot. ... It completed its turn": out of the lot it came.
+        if before.iter().any(|other| other.who == frame.who && other.act() == Some(Act::PullOut)) {
+            continue;
+        }
         let meant = before
             .iter()
             .rev()

@@ -528,10 +528,14 @@ impl Parser<'_> {
         let itself = taken.sense == Sense::Contact && taken.who == Some(actor) && actor != SUBJECT;
         let like = if itself { self.world.other_like(actor) } else { None };
         // "A deer leaped into its path. Its front hit the deer": nobody's own front does.
-        if itself && like.is_none() && taken.with.as_ref().is_some_and(|piece| piece.its) {
+        // "Its rear rubbed against the corner of the halted vehicle": called only a vehicle, it is the other one.
+        let owner = mention.piece.as_ref().and_then(|piece| piece.owner.as_ref());
+        let other = owner.is_some_and(|owner| owner.kind == Some(Kind::Vehicle) && owner.names.is_empty());
+        let own = itself && like.is_none() && taken.with.as_ref().is_some_and(|piece| piece.its);
+        if own && !other {
             taken.who = Some(SUBJECT);
         }
-        let actor = like.unwrap_or(actor);
+        let actor = like.unwrap_or(if own && other { SUBJECT } else { actor });
         taken.object = Some(actor);
         taken.on.clone_from(&mention.piece);
         taken.end = placed.end;

@@ -35,6 +35,7 @@ impl Parser<'_> {
             {
                 self.frames[frame].object.get_or_insert(mention.actor);
             }
+            "at" if self.comes_at(frame, mention) => self.comes_toward(frame, mention),
             "onto" | "with" | "between" | "and" | "upon" | "on" | "at" | "along" | "near" | "to" | "off" => {
                 self.met(frame, preposition, mention, placed, carry);
             }
@@ -272,6 +273,14 @@ impl Parser<'_> {
             found.is_some() || matches!(self.tokens[at].text.as_str(), "toward" | "towards")
         });
         opposite || other_way || behind
+    }
+
+    /// "a motorcycle came at it".
+    fn comes_at(&self, frame: usize, mention: &Mention) -> bool {
+        let taken = &self.frames[frame];
+        let comes = ["came", "coming", "comes", "rode", "riding", "drove", "headed"];
+        let whole = mention.actor == SUBJECT && mention.piece.is_none();
+        whole && comes.contains(&self.tokens[taken.first].text.as_str()) && taken.act() == Some(Act::Follow)
     }
 
     /// "a truck coming towards it".

@@ -426,7 +426,11 @@ fn made_to_stop(tokens: &mut Vec<Token>) {
         let named = at + 1 + usize::from(matches!(word(at + 1), "the" | "our"));
         let subject =
             lexicon.longest(tokens, named, |meaning| matches!(meaning, Meaning::Subject)).map(|found| found.length);
-        let Some(length) = subject.or((word(at + 1) == "it").then_some(1)) else { continue };
+        // "The test driver brought the vehicle to a halt".
+        let begins = tokens[..at].iter().rposition(|token| token.text == ".").map_or(0, |stop| stop + 1);
+        let driver = tokens[begins..at].iter().any(|token| matches!(token.text.as_str(), "driver" | "operator"));
+        let vehicle = word(at + 1) == "the" && driver && matches!(word(named), "vehicle" | "car" | "truck" | "shuttle");
+        let Some(length) = subject.or((word(at + 1) == "it" || vehicle).then_some(1)) else { continue };
         let end = named + length;
         let halts =
             (word(end), word(end + 1)) == ("to", "a") && matches!(word(end + 2), "stop" | "halt" | "standstill");
