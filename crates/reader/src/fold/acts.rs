@@ -401,6 +401,7 @@ fn act_of(reading: &Reading<'_>, number: usize, frame: &Frame, pushed: bool) -> 
         }
         // "It drove up on green and began to proceed through the junction": so it went on.
         Act::SetOff if begins_to_go_on(reading, number, frame) => Act::Follow,
+        Act::SetOff if drives_already(reading, number, frame) => Act::Follow,
         // "shifted into reverse and began to accelerate": still backwards.
         Act::SetOff if gains_speed(reading, number, frame) && moved() == Some(Act::Reverse) => Act::Reverse,
         Act::SetOff if gains_speed(reading, number, frame) => Act::Accelerate,
@@ -494,6 +495,22 @@ pub(super) fn begins_to_go_on(reading: &Reading<'_>, number: usize, frame: &Fram
         && !waited
         && !turned_green(reading, frame)
         && last_act(reading, number, frame, |_| true) == Some(Act::Follow)
+}
+
+/// "moved to the right and began to travel along the curb": who drives already does not set off.
+pub(super) fn drives_already(reading: &Reading<'_>, number: usize, frame: &Frame) -> bool {
+    let words: Vec<&str> =
+        reading.story.tokens[frame.first..frame.end].iter().map(|token| token.text.as_str()).collect();
+    let begins = words.first().is_some_and(|word| ["beg", "start"].iter().any(|stem| word.starts_with(stem)));
+    let goes = words.iter().any(|word| ["travel", "driv", "proceed"].iter().any(|stem| word.starts_with(stem)));
+    let Some(who) = frame.who.filter(|_| begins && goes && !turned_green(reading, frame)) else { return false };
+    let before = reading.before(who).take_while(|(other, _)| *other < number).map(|(_, other)| other);
+    let tells = |other: &&Frame| other.act().is_some() || other.sense == Sense::Yield;
+    let last = before.filter(tells).last();
+    last.is_some_and(|last| {
+        let moves = matches!(last.act(), Some(Act::Drift | Act::LaneChange | Act::Turn | Act::Pass | Act::Swerve));
+        moves && last.happened() && last.sentence == frame.sentence
+    })
 }
 
 /// "It turned, and yielded to a man": who gives way to somebody and had not slowed since it drove has slowed for that.

@@ -1,6 +1,6 @@
 //! State at the contact as the words tell it, how long somebody had stood, and why.
 
-use super::acts::{avoids, begins_to_go_on, gains_speed, in_headline, sets_off_at_green};
+use super::acts::{avoids, begins_to_go_on, drives_already, gains_speed, in_headline, sets_off_at_green};
 use super::controls::{in_its_queue, shown};
 use super::lanes::waits_to_change;
 use super::speeds::is_of_last_contact;
@@ -66,7 +66,9 @@ pub(super) fn state(reading: &Reading<'_>, actor: Actor) -> (Option<Fact<Contact
         }
         let act = match act {
             Act::SetOff if gains_speed(reading, number, frame) => Act::Accelerate,
-            Act::SetOff if begins_to_go_on(reading, number, frame) => Act::Follow,
+            Act::SetOff if begins_to_go_on(reading, number, frame) || drives_already(reading, number, frame) => {
+                Act::Follow
+            }
             Act::Follow if sets_off_at_green(reading, number, frame) => Act::SetOff,
             act => act,
         };

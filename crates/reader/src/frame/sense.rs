@@ -16,7 +16,7 @@ use recrash_model::account::{Act, Compass, Kind, KindGroup, LeftRight};
 
 type Rule = fn(&Parser<'_>, &Spoken<'_>, &Carry) -> Option<Sense>;
 
-const SENSES: [Rule; 50] = [
+const SENSES: [Rule; 51] = [
     lowers_a_part,
     goes_up_or_down,
     goes_down_a_hill,
@@ -43,6 +43,7 @@ const SENSES: [Rule; 50] = [
     begins_to_move_over,
     begins_to_drive_past,
     reaches_in,
+    stands_over,
     gets_in,
     is_outside,
     is_of_a_hand,
@@ -488,6 +489,19 @@ fn reaches_in(parser: &Parser<'_>, verb: &Spoken<'_>, carry: &Carry) -> Option<S
     let last = carry.last.as_ref().filter(|last| last.actor != SUBJECT && last.end + 1 >= verb.placed().first)?;
     let parked = parser.world.actors[last.actor].parked;
     (reaches && parked && verb.sense == Sense::Act(Act::Drift)).then_some(Sense::Other)
+}
+
+/// "was parked, encroaching on the lane", "halted straddling two lanes": it stands there, and goes nowhere.
+fn stands_over(parser: &Parser<'_>, verb: &Spoken<'_>, carry: &Carry) -> Option<Sense> {
+    const OVER: [&str; 10] =
+        ["intrud", "encroach", "protrud", "jut", "straddl", "lean", "overlap", "reach", "project", "crossing"];
+    let over = verb.sense == Sense::Act(Act::Drift)
+        && verb.form == Form::Ing
+        && OVER.iter().any(|stem| verb.word(parser).starts_with(stem));
+    let who = carry.subject.as_ref().or(carry.last.as_ref()).filter(|_| over && !carry.be && !carry.began)?.actor;
+    let last = parser.frames.iter().rev().find(|frame| frame.who == Some(who) && frame.act().is_some())?;
+    let stood = matches!(last.act(), Some(Act::Stop | Act::Hold | Act::Park)) && last.happened();
+    (stood && last.sentence == parser.sentence).then_some(Sense::Other)
 }
 
 /// "to the left", "toward its right".
