@@ -133,7 +133,7 @@ fn had_a_light(reading: &Reading<'_>, all: &mut Vec<Fact<Control>>) {
     let story = &reading.story;
     let word = |at: usize| story.tokens.get(at).map_or("", |token| token.text.as_str());
     let until = reading.until().min(story.tokens.len());
-    for at in 1..until {
+    for at in 0..until {
         let named_here =
             matches!(word(at + 1), "a" | "the" | "its").then(|| named(&[word(at + 2), word(at + 3), word(at + 4)]));
         let Some(Some((device, state, length))) = named_here else { continue };

@@ -119,6 +119,17 @@ fn is_only_a_mode(reading: &Reading<'_>, number: usize) -> bool {
     if frame.who != Some(SUBJECT) || frame.act() != Some(Act::Follow) || !operates || frame.heading.is_some() {
         return false;
     }
+    // Who set off later was on its way, whatever it stood for.
+    let leaves = |(later, other): (usize, &Frame)| {
+        let moves = matches!(
+            other.act(),
+            Some(Act::SetOff | Act::Enter | Act::Turn | Act::Follow | Act::LaneChange | Act::Pass)
+        );
+        later > number && moves && other.happened()
+    };
+    if reading.before(SUBJECT).any(leaves) {
+        return false;
+    }
     let mut own = reading.before(SUBJECT).skip_while(|(other, _)| *other <= number).map(|(_, other)| other);
     let Some(next) = own.find(|other| other.act().is_some() && other.happened()) else { return false };
     let between: Vec<&str> =

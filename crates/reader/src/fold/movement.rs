@@ -226,7 +226,9 @@ fn into_its_lane(reading: &Reading<'_>) -> Option<Source> {
     let its_lane = |number: usize| {
         let (first, end) = reading.window(number);
         let word = |at: usize| tokens.get(at).map_or("", |token| token.text.as_str());
-        (first..end).any(|at| word(at) == "'s" && word(at + 1) == "lane" || word(at) == "its" && word(at + 1) == "lane")
+        // "departed from its lane" is out of its own.
+        let into = |at: usize| at > 0 && !matches!(word(at - 1), "from" | "of" | "left" | "leaving" | "departed");
+        (first..end).any(|at| word(at + 1) == "lane" && (word(at) == "'s" || word(at) == "its" && into(at)))
     };
     // "came over into its lane", and not "turned left and entered its lane".
     let (_, frame) = moves.find(|(number, _)| its_lane(*number))?;
@@ -355,13 +357,14 @@ fn movement(reading: &Reading<'_>, party: &Party, column: Option<Movement>, name
             best = None;
         }
         // "turned left and kept going": with its turn.
-        let keeps_on =
-            ["kept", "keep", "continu", "carr", "went on"].iter().any(|stem| words_of(fact).starts_with(stem))
-                && frame_of(fact).is_some_and(|frame| {
-                    let turned = |other: &ActFact| other.act == Act::Turn && other.step < fact.step;
-                    let turn = party.acts.iter().rev().find(|other| turned(other)).and_then(frame_of);
-                    turn.is_some_and(|turn| turn.sentence == frame.sentence)
-                });
+        let keeps_on = frame_of(fact).is_some_and(|frame| {
+            let word = |at: Option<usize>| at.map_or("", |at| reading.story.tokens[at].text.as_str());
+            let on = |word: &str| ["kept", "keep", "continu"].iter().any(|stem| word.starts_with(stem));
+            let turned = |other: &ActFact| other.act == Act::Turn && other.step < fact.step;
+            let turn = party.acts.iter().rev().find(|other| turned(other)).and_then(frame_of);
+            let near = turn.is_some_and(|turn| turn.sentence == frame.sentence);
+            near && (on(word(Some(frame.first))) || on(word(frame.first.checked_sub(1))))
+        });
         if fact.act == Act::Follow
             && !keeps_on
             && best.as_ref().is_some_and(|(_, known, source)| {

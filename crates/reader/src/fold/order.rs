@@ -45,7 +45,9 @@ fn by_standing(account: &Account, state: ContactState) -> Said {
     if told(&account.door) == Some(Striker::Cp) && (opened || !drove_on) {
         return Some((FirstMover::Sv, "a door was opened into it"));
     }
-    match (state.stands(), cp_state(account).is_some_and(ContactState::stands)) {
+    // Who is pushed into it comes, whatever it stood for before.
+    let pushed = account.partner.as_ref().is_some_and(|partner| partner.did(Act::Pushed));
+    match (state.stands(), !pushed && cp_state(account).is_some_and(ContactState::stands)) {
         (true, false) => Some((FirstMover::Sv, "who stands is there first")),
         (false, true) => Some((FirstMover::Cp, "who stands is there first")),
         _ => None,

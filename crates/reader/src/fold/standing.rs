@@ -7,7 +7,7 @@ use super::speeds::is_of_last_contact;
 use super::{Reading, flashback, nominal};
 use crate::chunk::Joint;
 use crate::frame::Frame;
-use crate::lexicon::{Form, Lexicon, Part, Progress, Relation, Sense};
+use crate::lexicon::{Form, Lexicon, Meaning, Part, Progress, Relation, Sense};
 use crate::token::Token;
 use crate::world::{Actor, SUBJECT};
 use recrash_model::account::{Act, ContactState, Fact, Kind, KindGroup, SignalState, StandReason, Standing};
@@ -323,6 +323,7 @@ pub(super) fn reasons(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<StandReas
             let green = reason == StandReason::RedLight && shows_another_colour(reading, begins + at, length);
             // "behind a van that was letting out passengers": why the van stood.
             let of_queue = begins + at >= own && !matches!(reason, StandReason::RedLight | StandReason::Queue);
+            let of_queue = of_queue || is_of_another(tokens, begins + at, reason);
             if !place
                 && !green
                 && !of_queue
@@ -406,6 +407,13 @@ fn because(reading: &Reading<'_>, number: usize) -> Option<Fact<StandReason>> {
         None => return None,
     };
     Some(Fact { value, source: reading.of(next) })
+}
+
+/// "stopped for a bus discharging riders": why the bus stood.
+fn is_of_another(tokens: &[Token], at: usize, reason: StandReason) -> bool {
+    let kind = |at: usize| Lexicon::get().longest(tokens, at, |meaning| matches!(meaning, Meaning::Kind(_))).is_some();
+    let ing = tokens[at].text.ends_with("ing");
+    reason == StandReason::PickupDropoff && ing && at.checked_sub(1).is_some_and(kind)
 }
 
 /// "stopped for a paramedic on foot": why, by whom it stops for.

@@ -7,7 +7,7 @@ use crate::chunk::Chunk;
 use crate::lexicon::{Form, Occupant, Sense};
 use crate::token::Token;
 use crate::world::SUBJECT;
-use recrash_model::account::{Act, Kind};
+use recrash_model::account::{Act, Kind, KindGroup};
 
 /// "the lanes were closed", "a gate that was closed": it had been, and nothing comes down.
 pub(super) fn is_closed(parser: &Parser<'_>, verb: &Spoken<'_>, carry: &Carry) -> Option<Sense> {
@@ -139,6 +139,14 @@ pub(super) fn comes_along(parser: &Parser<'_>, verb: &Spoken<'_>, carry: &Carry)
     });
     let rolls = verb.sense == Sense::Act(Act::Roll) && matches!(verb.next(), Some(Chunk::Compass(_)));
     (acts && (down && way || rolls && single(verb.placed()))).then_some(Sense::Act(Act::Follow))
+}
+
+/// "fell and slid to a stop", of who rides: it did not stop as who drives does.
+pub(super) fn slides_to_a_stop(parser: &Parser<'_>, verb: &Spoken<'_>, carry: &Carry) -> Option<Sense> {
+    let kind = carry.subject.as_ref().and_then(|subject| parser.world.actors[subject.actor].kind);
+    let rides = kind.is_some_and(|kind| matches!(kind.group(), KindGroup::Motorcycle | KindGroup::Cyclist));
+    let slides = verb.sense == Sense::Act(Act::Stop) && verb.word(parser).starts_with("slid");
+    (rides && slides).then_some(Sense::Act(Act::LoseControl))
 }
 
 /// "went over the handlebars".

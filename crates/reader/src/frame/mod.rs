@@ -221,7 +221,6 @@ pub fn story(text: &str, own: Own<'_>) -> Story {
     strikes_both(&mut frames, &mut world, &tokens);
     pairs::apply(&mut frames, &mut world, &tokens);
     stood_itself(&mut frames, &tokens, &sentences);
-    turns_as_meant(&mut frames);
     fall_once(&mut frames, &world);
     let about: Vec<(usize, Actor)> = frames
         .iter()
@@ -281,26 +280,6 @@ fn name_operators(tokens: &mut [Token]) {
 
 /// "a Tern truck traveling with its safety driver in autonomous mode": so near stands what drives it. [tokens]
 const OWN_MODE_WITHIN: usize = 10;
-
-/// "waited to turn left. ... It began its turn": to the side that was told before.
-fn turns_as_meant(frames: &mut [Frame]) {
-    for number in 1..frames.len() {
-        let (before, behind) = frames.split_at_mut(number);
-        let frame = &mut behind[0];
-        if frame.sense != Sense::Act(Act::Turn) || frame.side.is_some() || !frame.happened() {
-            continue;
-        }
-        // "attempting to turn right while exiting a lot. ... It completed its turn": out of the lot it came.
-        if before.iter().any(|other| other.who == frame.who && other.act() == Some(Act::PullOut)) {
-            continue;
-        }
-        let meant = before
-            .iter()
-            .rev()
-            .find(|other| other.who == frame.who && other.act() == Some(Act::Turn) && !other.negated);
-        frame.side = meant.and_then(|other| other.side);
-    }
-}
 
 /// "A man threw a bottle at both cars", where one other is known at most: the subject vehicle is one of the two.
 fn strikes_both(frames: &mut [Frame], world: &mut World, tokens: &[Token]) {

@@ -4,7 +4,7 @@
 
 use super::handled::{
     comes_along, does_not_fall, drops_riders_off, goes_over_the_bars, handles_a_thing, is_closed, is_of_an_alley,
-    launches_another, turns_in_its_seat, turns_out_to_be, turns_the_wheel,
+    launches_another, slides_to_a_stop, turns_in_its_seat, turns_out_to_be, turns_the_wheel,
 };
 use super::parser::{Carry, Parser};
 use super::row::{Spoken, single};
@@ -16,7 +16,7 @@ use recrash_model::account::{Act, Compass, Kind, KindGroup, LeftRight};
 
 type Rule = fn(&Parser<'_>, &Spoken<'_>, &Carry) -> Option<Sense>;
 
-const SENSES: [Rule; 51] = [
+const SENSES: [Rule; 52] = [
     lowers_a_part,
     goes_up_or_down,
     goes_down_a_hill,
@@ -67,6 +67,7 @@ const SENSES: [Rule; 51] = [
     slides_over,
     comes_along,
     goes_over_the_bars,
+    slides_to_a_stop,
     is_of_an_alley,
 ];
 
