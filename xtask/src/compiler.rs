@@ -37,7 +37,7 @@ pub fn prepare() -> Result {
     if !tool("clippy-driver").is_file() {
         return Err("Clippy is not installed: rustup component add clippy".to_owned());
     }
-    let stand_in = folder().join(format!("compiler{}", env::consts::EXE_SUFFIX));
+    let stand_in = program();
     let copied = || {
         let program = fs::read(env::current_exe()?)?;
         if fs::read(&stand_in).is_ok_and(|there| there == program) {
@@ -54,6 +54,11 @@ pub fn prepare() -> Result {
     // Who prepares twice gets the same.
     let _ = VARIABLES.set(named.into());
     Ok(())
+}
+
+/// The copy of this program, which stays where it is while cargo builds.
+pub fn program() -> PathBuf {
+    folder().join(format!("xtask{}", env::consts::EXE_SUFFIX))
 }
 
 /// Compiles what cargo asks for, if it is cargo that calls; `None` for everybody else.

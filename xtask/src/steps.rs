@@ -87,7 +87,7 @@ impl Aside {
         let begin = || {
             let file = std::fs::File::create(&told)?;
             let errors = file.try_clone()?;
-            let mut command = Command::new(std::env::current_exe()?);
+            let mut command = Command::new(compiler::program());
             command.args(names).env(BUILT, program).stdin(Stdio::null()).stdout(file).stderr(errors).spawn()
         };
         begin().map(|child| Aside(child, told.clone())).map_err(|error| format!("{}: {error}", names.join(", ")))

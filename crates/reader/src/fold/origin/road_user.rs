@@ -535,12 +535,17 @@ impl<'a> Case<'a> {
         if crossing { self.across(side) } else { None }
     }
 
-    /// "A taxi from the right entered the intersection".
+    /// "A taxi from the right entered the intersection"; "the second lane from the right" is a lane.
     fn comes_into_it(&self, frame: &Frame) -> bool {
         let sentence = self.reading.story.sentences[frame.sentence];
         let words: Vec<&str> =
             self.reading.story.tokens[sentence.first..sentence.end].iter().map(|token| token.text.as_str()).collect();
-        let from = words.windows(3).any(|row| matches!(row, ["from", "the" | "its", "left" | "right"]));
+        let counts = |word: &str| matches!(word, "second" | "third" | "fourth" | "lane" | "lanes");
+        let from = (0..words.len()).any(|at| {
+            let side = matches!(words[at..], ["from", "the" | "its", "left" | "right", ..]);
+            let lane = words.get(at + 3).is_some_and(|word| counts(word)) || at > 0 && counts(words[at - 1]);
+            side && !lane
+        });
         from && words.iter().any(|word| matches!(*word, "intersection" | "junction"))
     }
 
