@@ -552,7 +552,7 @@ impl Chunker<'_> {
             && self.part(own + usize::from(self.text(own) == "own")).is_some_and(|(part, length)| {
                 matches!(part, Part::Left | Part::Right) && (length > 1 || self.text(own + length) == "side")
             });
-        if of_a_side && matches!(self.text(behind - 2), "rear" | "back" | "front") {
+        if of_a_side && behind > 1 && matches!(self.text(behind - 2), "rear" | "back" | "front") {
             return true;
         }
         let part = self

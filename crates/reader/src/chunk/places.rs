@@ -289,7 +289,7 @@ impl Chunker<'_> {
     fn told_behind_lane(&self, lane: usize) -> Option<(LaneWord, usize)> {
         let behind = lane + 1;
         // "just left of the slip lane for right turns".
-        if self.text(lane - 1) == "slip" {
+        if lane > 0 && self.text(lane - 1) == "slip" {
             return None;
         }
         let side_at = |at: usize| match self.text(at) {

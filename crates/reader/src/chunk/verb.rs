@@ -572,7 +572,7 @@ impl Chunker<'_> {
             let last = before.iter().rev().find(|placed| matches!(placed.chunk, Chunk::Verb(..) | Chunk::Be));
             last.is_some_and(|last| matches!(last.chunk, Chunk::Verb(_, Form::Past)) && has(last.first).is_some())
         };
-        has(at).is_some() || matches!(self.text(at - 1), "and" | "then") && row()
+        has(at).is_some() || at > self.first && matches!(self.text(at - 1), "and" | "then") && row()
     }
 
     /// "the next parking lot", "a yard", where no thing of it is named: "the wall of", "the garage door".

@@ -121,7 +121,7 @@ pub(super) fn on_side_street(reading: &Reading<'_>, actor: Actor) -> bool {
         own.into_iter().any(crossing)
             || (first..end).any(|at| {
                 let road = matches!(word(at + 1), "street" | "road" | "streets")
-                    || word(at) == "cross" && word(at + 1) == "traffic" && word(at - 1) == "the";
+                    || at > 0 && word(at - 1) == "the" && word(at) == "cross" && word(at + 1) == "traffic";
                 let crosses = matches!(word(at), "side" | "cross" | "crossing" | "intersecting" | "perpendicular");
                 // "the street on its left".
                 let there = matches!(word(at), "street" | "road")
