@@ -76,6 +76,9 @@ pub(crate) fn striker(reading: &Reading<'_>, account: &Account) -> Option<Fact<S
     if sv == Some(ContactState::Reversing) && fore(&account.sv) && !alone {
         return by_rule(Striker::Cp, BACKED_AWAY);
     }
+    if let Some(came) = came_over(account).filter(|_| is_between(reading, frame)) {
+        return by_rule(came, "who came over, of two of whom neither is said to have struck");
+    }
     let value = match (frame.who, frame.object) {
         (Some(SUBJECT), _) if rear_was_met(account) => Striker::Cp,
         (Some(SUBJECT), _) => Striker::Sv,
@@ -121,6 +124,22 @@ fn meet(reading: &Reading<'_>, frame: &Frame) -> bool {
     frame.sense == Sense::ContactMade
         && frame.who.is_none()
         && words.iter().any(|token| matches!(token.text.as_str(), "met" | "meet" | "meeting" | "together" | "each"))
+}
+
+/// "Contact was between the left side of the AV and the right side of the van": which is named first says nothing.
+fn is_between(reading: &Reading<'_>, frame: &Frame) -> bool {
+    let words = &reading.story.tokens[frame.first..frame.end];
+    frame.sense == Sense::ContactMade && words.iter().any(|token| token.text == "between")
+}
+
+/// Who alone of the two left its line.
+fn came_over(account: &Account) -> Option<Striker> {
+    let over = |party: &Party| [Act::LaneChange, Act::Drift, Act::Swerve].into_iter().any(|act| party.did(act));
+    match (over(&account.sv), account.partner.as_ref().is_some_and(over)) {
+        (true, false) => Some(Striker::Sv),
+        (false, true) => Some(Striker::Cp),
+        _ => None,
+    }
 }
 
 /// "Its front corner and that of the van collided".
