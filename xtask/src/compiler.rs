@@ -88,19 +88,25 @@ pub fn stand_in() -> Option<ExitCode> {
     }
 }
 
-/// Name and content of the note of a call that builds a library or a program; `None` for tests, examples and questions.
+/// Name and content of the note of a call that builds a library or a program; `None` for tests, examples and questions. A program that no
+/// test calls is built for its own tests alone: without `--test` that call is its.
 fn note(arguments: &[OsString]) -> Option<(String, Value)> {
     let arguments: Vec<&str> = arguments.iter().map(|argument| argument.to_str()).collect::<Option<_>>()?;
     let after = |name: &str| Some(arguments[arguments.iter().position(|argument| *argument == name)? + 1]);
-    let (name, kind) = (after("--crate-name")?, after("--crate-type")?);
-    let source = arguments.iter().find(|argument| argument.ends_with(".rs"))?;
-    if arguments.contains(&"--test") || !Path::new(source).components().any(|part| part.as_os_str() == "src") {
+    let source = Path::new(arguments.iter().find(|argument| argument.ends_with(".rs"))?);
+    let tested = arguments.contains(&"--test");
+    let program = source.ends_with("src/main.rs");
+    if tested && !program || !source.components().any(|part| part.as_os_str() == "src") {
         return None;
+    }
+    let (name, kind) = (after("--crate-name")?, if program { "bin" } else { after("--crate-type")? });
+    let mut asked: Vec<&str> = arguments.iter().copied().filter(|argument| *argument != "--test").collect();
+    if tested {
+        asked.extend(["--crate-type", "bin"]);
     }
     let read = |name: &str| READ.iter().any(|known| name.starts_with(known));
     let variables: BTreeMap<String, String> = env::vars().filter(|(name, _)| read(name)).collect();
-    let note =
-        json!({ "name": name, "folder": env::current_dir().ok()?, "variables": variables, "arguments": arguments });
+    let note = json!({ "name": name, "folder": env::current_dir().ok()?, "variables": variables, "arguments": asked });
     Some((format!("{name}-{kind}.json"), note))
 }
 

@@ -120,9 +120,7 @@ fn format(_: &mut Tally) -> Result {
 
 /// Everything that tests, examples and benchmarks are made of, linted while it is built.
 fn build(_: &mut Tally) -> Result {
-    cargo(&["test", "--workspace", "--all-targets", "--no-run", "--quiet"], &[])?;
-    // A program without tests that call it is built for tests alone by that.
-    cargo(&["build", "--workspace", "--bins", "--quiet"], &[])
+    cargo(&["test", "--workspace", "--all-targets", "--no-run", "--quiet"], &[])
 }
 
 /// What tests need and cargo does not bring: `.venv`, a Python with MetaDrive, and what drives the browser.
