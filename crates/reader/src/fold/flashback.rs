@@ -4,7 +4,7 @@ use super::Reading;
 use super::contact::Contacts;
 use crate::frame::{Frame, Story};
 use crate::lexicon::{Form, Sense};
-use crate::token::Token;
+use crate::token::{MONTHS, Token};
 use crate::world::{Actor, SUBJECT};
 use recrash_model::account::Act;
 use std::ops::Range;
@@ -205,21 +205,6 @@ fn begins_behind_headline(story: &Story, contacts: &Contacts, lead: usize) -> Op
     let headline = (clock || date) && !story.frames.iter().any(led);
     (headline && !goes_on && story.frames.iter().any(tells) && !is_aftermath(story, lead + 1)).then_some(lead + 1)
 }
-
-const MONTHS: [&str; 12] = [
-    "january",
-    "february",
-    "march",
-    "april",
-    "may",
-    "june",
-    "july",
-    "august",
-    "september",
-    "october",
-    "november",
-    "december",
-];
 
 /// "It braked hard before making contact", "was still slowing down prior to the impact", of one of the two: what led to it.
 fn leads_to_the_contact(story: &Story, contacts: &Contacts, sentence: usize) -> bool {

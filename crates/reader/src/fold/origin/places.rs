@@ -5,6 +5,7 @@ use crate::fold::Reading;
 use crate::fold::types::turning;
 use crate::frame::Frame;
 use crate::lexicon::{Relation, Sense};
+use crate::token::MONTHS;
 use crate::world::{Actor, SUBJECT};
 use recrash_model::account::{Account, Act, ActFact, Compass, LaneWord, LeftRight, PlaceKind, Source};
 use recrash_model::template::RoadType;
@@ -262,28 +263,8 @@ fn story_words<'a>(reading: &'a Reading<'_>) -> Vec<&'a str> {
 
 /// "on Monday", "on March 3".
 fn is_date(word: &str) -> bool {
-    const DATES: [&str; 19] = [
-        "monday",
-        "tuesday",
-        "wednesday",
-        "thursday",
-        "friday",
-        "saturday",
-        "sunday",
-        "january",
-        "february",
-        "march",
-        "april",
-        "may",
-        "june",
-        "july",
-        "august",
-        "september",
-        "october",
-        "november",
-        "december",
-    ];
-    DATES.contains(&word)
+    const DAYS: [&str; 7] = ["monday", "tuesday", "wednesday", "thursday", "friday", "saturday", "sunday"];
+    DAYS.contains(&word) || MONTHS.contains(&word)
 }
 
 /// Words of a name that tell one part of a street from another.
