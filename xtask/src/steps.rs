@@ -6,6 +6,7 @@ use std::ffi::{OsStr, OsString};
 use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
+use std::sync::OnceLock;
 use std::time::Instant;
 
 /// What a step gives: why it failed, in one line.
@@ -30,6 +31,8 @@ pub const STEPS: [Step; 10] = [
 
 /// Names the program that is tested. Who asks cargo for it waits until nobody else builds.
 const BUILT: &str = "RECRASH";
+/// Set once this process has built it. To ask cargo again builds what the wheel asks of its libraries back.
+static HAS_BUILT: OnceLock<()> = OnceLock::new();
 /// What [`ci`] does first: what is cheap, and what tests need. What they run is built before anybody else asks cargo for something.
 const FIRST: [&str; 4] = ["format", "tidy", "prepare", "build"];
 /// Then, one after the other in a process of its own, the steps that run what was built; they keep about one core busy.
@@ -120,7 +123,9 @@ fn format(_: &mut Tally) -> Result {
 
 /// Everything that tests, examples and benchmarks are made of, linted while it is built.
 fn build(_: &mut Tally) -> Result {
-    cargo(&["test", "--workspace", "--all-targets", "--no-run", "--quiet"], &[])
+    cargo(&["test", "--workspace", "--all-targets", "--no-run", "--quiet"], &[])?;
+    let _ = HAS_BUILT.set(());
+    Ok(())
 }
 
 /// What tests need and cargo does not bring: `.venv`, a Python with MetaDrive, and what drives the browser.
@@ -237,12 +242,14 @@ fn browser_folder() -> PathBuf {
     root().join("crates/report/tests/browser")
 }
 
-/// The program as the Rust tests run it: one build serves all. Nothing is built right after them, or where `RECRASH` names one.
+/// The program as the Rust tests run it: one build serves all. Nothing is built where this program has built it, or where `RECRASH` names one.
 pub fn built() -> Result<PathBuf> {
     if let Some(program) = std::env::var_os(BUILT) {
         return Ok(program.into());
     }
-    build(&mut Tally::default())?;
+    if HAS_BUILT.get().is_none() {
+        build(&mut Tally::default())?;
+    }
     Ok(program())
 }
 

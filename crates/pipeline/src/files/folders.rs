@@ -25,3 +25,17 @@ pub fn must_be_free(folder: &Path, ours: Option<&str>) -> Result<(), PipelineErr
         }
     }
 }
+
+/// A file that is there and says something else than would be written may be somebody's work: it is not replaced.
+///
+/// # Errors
+/// There is such a file.
+pub fn must_be_absent_or_same(file: &Path, text: &[u8]) -> Result<(), PipelineError> {
+    if std::fs::symlink_metadata(file).is_ok() && std::fs::read(file).ok().as_deref() != Some(text) {
+        return Err(PipelineError::bad_input(format!(
+            "{} is there and differs from what would be written; name another folder, or move the file away",
+            file.display()
+        )));
+    }
+    Ok(())
+}

@@ -2,7 +2,7 @@
 //! and `docs/models/minimal.md`.
 
 use crate::error::PipelineError;
-use crate::files::folders::must_be_free;
+use crate::files::folders::{must_be_absent_or_same, must_be_free};
 use crate::files::json::to_json;
 use crate::files::output::Outputs;
 use crate::files::store::{Store, write_suite_file};
@@ -245,42 +245,50 @@ pub fn minimal_failures(
     }
     must_be_free(folder, Some(MINIMAL_FILE))?;
     let failing = failing(&bench, &request.only)?;
-    let store = Store::create(folder, write_suite_file)?;
-    let of = |each: &Failing| -> Result<MinimalOf, PipelineError> {
-        let id = &each.test.id;
-        let record = told.get(id.as_str()).copied();
-        let found = minimal(each.scenario.draft(), record, &bench.simulator, bench.profile())?;
-        let scenario = format!("{id}.json");
-        store.write(&scenario, recrash_roads::write_draft(&found.draft).as_bytes())?;
-        let twin = match &found.twin {
-            Some(twin) => {
-                let file = format!("{id}.passes.json");
-                store.write(&file, recrash_roads::write_draft(&twin.draft).as_bytes())?;
-                Some(file)
-            }
-            None => None,
-        };
-        let findings = match recrash_roads::check(found.draft) {
-            Ok(checked) => run_scenario(&checked.value, &bench.simulator, bench.profile(), None)
-                .map_err(|error| PipelineError::not_run(&error))?
-                .finding_kinds()
-                .into_iter()
-                .filter(|kind| kind.is_failure())
-                .collect(),
-            Err(_) => Vec::new(),
-        };
-        let difference = found.twin.map(|twin| twin.difference);
-        let (taken, needed) = (found.taken, found.needed);
-        Ok(MinimalOf { id: id.clone(), scenario, findings, twin, difference, taken, needed })
-    };
+    let (failures, files): (Vec<MinimalOf>, Vec<_>) =
+        on_each(&bench, &failing, "minimal", progress, |each| minimal_of(&bench, &told, each))?.into_iter().unzip();
     let report = MinimalReport {
         format: "recrash.minimal/1",
         suite: bench.opened.suite.content.clone(),
         ego: bench.simulator.ego().to_owned(),
-        failures: on_each(&bench, &failing, "minimal", progress, of)?,
+        failures,
     };
-    store.write(MINIMAL_FILE, &to_json(&report))?;
+    let mut files: Vec<(String, Vec<u8>)> = files.into_iter().flatten().collect();
+    files.push((MINIMAL_FILE.to_owned(), to_json(&report)));
+    files.iter().try_for_each(|(name, text)| must_be_absent_or_same(&folder.join(name), text))?;
+    let store = Store::create(folder, write_suite_file)?;
+    files.iter().try_for_each(|(name, text)| store.write(name, text).map(drop))?;
     Ok(report)
+}
+
+/// What a failure needs, and the files that hold it, by name.
+fn minimal_of(
+    bench: &Bench,
+    told: &BTreeMap<&str, &ScenarioDraft>,
+    each: &Failing,
+) -> Result<(MinimalOf, Vec<(String, Vec<u8>)>), PipelineError> {
+    let id = &each.test.id;
+    let record = told.get(id.as_str()).copied();
+    let found = minimal(each.scenario.draft(), record, &bench.simulator, bench.profile())?;
+    let scenario = format!("{id}.json");
+    let mut files = vec![(scenario.clone(), recrash_roads::write_draft(&found.draft).into_bytes())];
+    let twin = found.twin.as_ref().map(|twin| {
+        let file = format!("{id}.passes.json");
+        files.push((file.clone(), recrash_roads::write_draft(&twin.draft).into_bytes()));
+        file
+    });
+    let findings = match recrash_roads::check(found.draft) {
+        Ok(checked) => run_scenario(&checked.value, &bench.simulator, bench.profile(), None)
+            .map_err(|error| PipelineError::not_run(&error))?
+            .finding_kinds()
+            .into_iter()
+            .filter(|kind| kind.is_failure())
+            .collect(),
+        Err(_) => Vec::new(),
+    };
+    let difference = found.twin.map(|twin| twin.difference);
+    let (taken, needed) = (found.taken, found.needed);
+    Ok((MinimalOf { id: id.clone(), scenario, findings, twin, difference, taken, needed }, files))
 }
 
 /// The list of a folder of minimal failures.

@@ -1,6 +1,7 @@
 //! Reconstructions as scenario files, one an incident.
 
 use crate::error::PipelineError;
+use crate::files::folders::must_be_absent_or_same;
 use crate::files::output::Outputs;
 use crate::files::store::io;
 use crate::reading::retelling::Retold;
@@ -24,16 +25,10 @@ pub fn write_reconstructions(
     }
     std::fs::create_dir_all(folder).map_err(|source| io("create", folder, source))?;
     let mut files = Vec::new();
-    // A file that is there and says something else may be somebody's work: nothing is written then.
     let text = |made: &Reconstruction| recrash_roads::write_draft(&made.draft);
+    // All of them before the first is written.
     for made in retold.iter().filter(|each| each.untold().is_none()).filter_map(|each| each.result.as_ref().ok()) {
-        let file = folder.join(format!("{}.json", made.draft.id));
-        if std::fs::symlink_metadata(&file).is_ok() && std::fs::read(&file).ok() != Some(text(made).into_bytes()) {
-            return Err(PipelineError::bad_input(format!(
-                "{} is there and differs from what would be written; name another folder, or move the file away",
-                file.display()
-            )));
-        }
+        must_be_absent_or_same(&folder.join(format!("{}.json", made.draft.id)), text(made).as_bytes())?;
     }
     for each in retold.iter().filter(|each| each.untold().is_none()) {
         let Ok(made) = &each.result else { continue };
