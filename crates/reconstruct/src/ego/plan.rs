@@ -73,6 +73,12 @@ fn shift(told: &Told, aside: Aside, pace: &Pace, least_m: f64) -> Act {
     let (over_s, from_m) = if told.sv.reacts { (SWERVES_S, SWERVES_M) } else { (ASIDE_S, ASIDE_M.0) };
     let half_m = (0.5 * over_s * speed_mps).clamp(0.5 * from_m, 0.5 * ASIDE_M.1).max(least_m);
     let drives = pace.speed_mps > 0.0;
+    // Who changes lanes for somebody has just done so.
+    let over_m = (2.0 * half_m).max(ASIDE_M.0);
+    if told.sv.reacts && (aside.to_t_m - aside.from_t_m).abs() >= LANE_M && drives && over_m < pace.driven_m {
+        let from_s = (time_before(contact_s, pace, over_m) * 10.0).round() / 10.0;
+        return when(from_s, Deed::Shift { to_t_m: aside.to_t_m, over_m });
+    }
     // Who was completing it has done most of it.
     let most_m = MOSTLY_DONE * half_m;
     if told.sv.completes && !aside.done && drives && speed_mps > 0.0 && most_m < pace.driven_m {

@@ -44,8 +44,8 @@ impl Near {
     pub(crate) fn holds(self, ego: &ActorTrack, track: &ActorTrack, until: usize) -> bool {
         let state = |step: usize| &track.states[step.min(track.states.len() - 1)];
         let mps = |step: usize| state(step).velocity().length();
-        // Seen from the ego as it came, before any turn.
-        let came = ego.states[0].heading;
+        // Seen from the ego as it came, before any turn; or behind that.
+        let came = ego.states[if self.after_turn { until } else { 0 }].heading;
         let ahead = Vec2::from_heading(came);
         let seen = |step: usize| {
             let way = state(step).position() - ego.states[step].position();

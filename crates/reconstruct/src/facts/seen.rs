@@ -7,6 +7,7 @@ use crate::told::crash::Told;
 use crate::told::near::Near;
 use crate::told::others::{Extra, GIVEN_WAY, Role};
 use crate::told::queue::{leaves_lane, waits_ahead};
+use crate::told::side::Turning;
 use crate::usual::{LANE_M, STANDS_MPS};
 use recrash_model::account::{ContactState, Kind, LeftRight, Origin, StandReason};
 use recrash_model::geometry::Vec2;
@@ -38,6 +39,9 @@ const CREEPS_MPS: f64 = 0.6;
 
 /// Who stands in the next lane is no farther ahead or behind. [m]
 const BESIDE_M: f64 = 10.0;
+
+/// Who makes room for somebody goes so far aside. [m]
+const ROOM_M: f64 = 0.3;
 
 /// Who is passed between it and the ego is abreast of that by so much, and no more lanes aside. [m, lanes]
 const OVERLAPS_M: f64 = 0.5;
@@ -307,8 +311,15 @@ impl<'a> Seen<'a> {
             let by = ahead_m <= 0.0 && before_m > 0.0 && facing > 2.0;
             by && step >= self.first_step(extra)
                 && (1.5..4.0 * LANE_M).contains(&left_m)
-                && (self.gives_way(step) || !extra.awaited)
+                && (self.gives_way(step) || self.makes_room(extra) || !extra.awaited)
         })
+    }
+
+    /// Whether the ego goes aside to the right for who comes towards it.
+    fn makes_room(&self, extra: &Extra) -> bool {
+        let (first, met) = (&self.ego.states[0], self.ego.states[self.until].position());
+        let right_m = -Vec2::from_heading(first.heading).cross(met - first.position());
+        extra.role == Role::Oncoming && self.told.sv.turning == Turning::No && right_m > ROOM_M
     }
 
     /// Whether somebody stands beside the ego's way all the time.

@@ -103,7 +103,9 @@ pub(super) fn junction(told: &Told, crossing: bool) -> Ground {
         straight(id, start, length_m, away, towards)
     };
     let (exit, lane) = match told.sv.turning {
-        Turning::Left => ("left+", told_lane(told, lanes).unwrap_or(0)),
+        Turning::Left => {
+            ("left+", told_lane(told, lanes).unwrap_or(usize::from(told.lets_by_on_left()).min(lanes - 1)))
+        }
         Turning::Right => ("right+", told_lane(told, lanes).unwrap_or(lanes - 1)),
         Turning::No | Turning::Round => {
             let usual = if at_kerb { lanes - 1 } else { usual_lane(told, lanes, one_way) };

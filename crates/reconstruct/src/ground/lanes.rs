@@ -2,6 +2,7 @@
 
 use crate::told::crash::Told;
 use crate::told::layout::strip_of;
+use crate::told::near::Does;
 use crate::told::others::{Extra, Role};
 use crate::told::side::Turning;
 use crate::told::zones::side_of;
@@ -120,6 +121,12 @@ fn passes_right(told: &Told) -> bool {
 }
 
 impl Told {
+    /// Whether another vehicle passes the ego on its left: in a lane that leads its way.
+    pub(super) fn lets_by_on_left(&self) -> bool {
+        let left = Some(Origin::Beside { side: LeftRight::Left });
+        self.wanted.iter().filter_map(|extra| extra.near).any(|near| near.does == Does::Passes && near.place == left)
+    }
+
     /// Whether another vehicle drives in the lane beside an ego that keeps its own, or comes over from there.
     fn is_beside_other(&self, side: LeftRight) -> bool {
         let along = matches!(self.origin, Origin::Behind | Origin::Ahead | Origin::Beside { .. });

@@ -35,6 +35,16 @@ impl<'a> Scene<'a> {
         [12.0, 24.0, -10.0, -25.0].into_iter().map(at).chain(off).collect()
     }
 
+    /// The same in the other lanes towards the ego.
+    pub(super) fn oncoming_beyond(&self) -> Vec<Way> {
+        let (s_m, _) = self.at(self.until);
+        let [_, usual_mps] = self.speeds();
+        let in_lane =
+            |(lane, on_m): (usize, f64)| Way::straight(self.against_in(lane, s_m + on_m), usual_mps, self.contact_s);
+        let lanes = if self.is_two_way() { 1..self.ground.oncoming.max(1) } else { 0..0 };
+        lanes.flat_map(|lane| [12.0, 24.0, -10.0, -25.0].map(|on_m| (lane, on_m))).map(in_lane).collect()
+    }
+
     /// In the lane towards the ego, where no junction is; else at the other side of it.
     pub(super) fn waits_opposite(&self, half_m: f64) -> Vec<Way> {
         if !self.is_two_way() {
@@ -87,7 +97,11 @@ impl<'a> Scene<'a> {
         let (s_m, _) = self.at(self.until);
         let front_m = s_m + self.front_m() + half_m;
         let far = [3.0, 5.0, 7.5, 10.0, 16.0, 24.0, 30.0].into_iter().filter(|on_m| *on_m >= least_m);
-        let places = far.flat_map(|on_m| self.lines().into_iter().map(move |t_m| (front_m + on_m, t_m)));
+        // In the lane in which the ego came first: whom it changes lanes for does not stand in that to which it goes.
+        let own_m = self.told.sv_aside().map_or(0.0, |aside| aside.from_t_m);
+        let mut lines = self.lines();
+        lines.sort_by_key(|t_m| *t_m != own_m);
+        let places = far.flat_map(|on_m| lines.clone().into_iter().map(move |t_m| (front_m + on_m, t_m)));
         let across_m = self.ground.first_m() + 2.0 * corner_m(self.ground.lanes) + half_m;
         let inside = |s_m: f64| self.ground.junction && s_m + half_m > self.ground.first_m() && s_m < across_m;
         let beyond = self.ground.junction.then(|| Way::stands(self.road(across_m + 1.0, 0.0)));

@@ -5,9 +5,12 @@ use crate::nearby::scene::{DRIVES_MPS, Scene};
 use crate::nearby::way::Way;
 use crate::told::near::Does;
 use crate::usual::{LANE_M, TURNS_MPS};
-use recrash_model::account::{LeftRight, Origin};
+use recrash_model::account::{Act, LeftRight, Origin};
 use recrash_model::geometry::Pose;
 use recrash_model::scenario::StripKind;
+
+/// Who stands in a lane, and is not told to be ahead, stands so far ahead of the ego there. [m]
+pub(super) const STANDS_AHEAD_M: f64 = 12.0;
 
 impl<'a> Scene<'a> {
     /// Backs a little: in the lane towards the ego, where it is told there; else out of where it is parked, or stands.
@@ -22,8 +25,12 @@ impl<'a> Scene<'a> {
     }
 
     pub(super) fn stands_beside(&self, side: LeftRight, half_m: f64) -> Vec<Way> {
+        self.stands_at(self.beside_m(side, self.until), half_m)
+    }
+
+    /// Stands on a line beside the ego's, about where that is at the contact.
+    fn stands_at(&self, t_m: f64, half_m: f64) -> Vec<Way> {
         let (s_m, _) = self.at(self.until);
-        let t_m = self.beside_m(side, self.until);
         let inside = |s_m: f64| self.ground.junction && s_m + 2.0 > self.ground.first_m();
         let at_line = self.ground.junction.then(|| self.ground.first_m() - half_m - 2.0);
         let places = [2.0, -6.0, 8.0, 12.0].into_iter().map(|on_m| s_m + on_m).chain(at_line);
@@ -38,6 +45,26 @@ impl<'a> Scene<'a> {
         let mut ways = self.stands_beside(side, half_m);
         ways.iter_mut().for_each(|way| way.from.heading += turned);
         ways
+    }
+
+    /// Stands in a lane, and nobody tells in which: in that to which the ego is on its way, or ahead, or beside; towards the ego last, but
+    /// for a partner that comes from there, for which that one may be in the way.
+    pub(super) fn stands_somewhere(&self, half_m: f64) -> Vec<Way> {
+        let (left, right) = (LeftRight::Left, LeftRight::Right);
+        let changes = self.told.sv.acts.iter().any(|doing| doing.act == Act::LaneChange);
+        let to = self.told.sv.aside.filter(|_| changes);
+        let beside = |side: LeftRight| self.stands_somewhere_beside(side, half_m);
+        let mut list = Vec::new();
+        if self.told.origin == Origin::Opposite {
+            list.extend(self.waits_opposite(half_m));
+            list.extend(beside(left));
+        }
+        list.extend(to.into_iter().flat_map(|side| self.stands_at(self.beside_m(side, 0), half_m)));
+        list.extend(self.stands_ahead(half_m, STANDS_AHEAD_M));
+        list.extend([right, left].into_iter().flat_map(beside));
+        list.extend(self.waits_opposite(half_m));
+        list.extend([left, right].into_iter().flat_map(|side| self.crosses(side, Does::Stands, half_m)));
+        list
     }
 
     /// Parked at a kerb, in a stall, or on a shoulder.

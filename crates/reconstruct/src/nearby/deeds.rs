@@ -12,6 +12,9 @@ use recrash_model::geometry::{Pose, Vec2};
 /// Who stood ahead sets off so long before the ego does. [s]
 const EARLIER_S: f64 = 0.8;
 
+/// A thing that begins to move takes so long more for its way. [s]
+const GAINS_S: f64 = 0.7;
+
 /// Who comes across waits so far beyond the lanes. [m]
 const BEYOND_M: f64 = 0.9;
 
@@ -106,7 +109,8 @@ impl Scene<'_> {
         }
     }
 
-    /// From beyond the lanes of one side to those of the other: it is in them at the contact, or has crossed them.
+    /// From beyond the lanes of one side to those of the other: it is in them at the contact, or has crossed them. A thing lies at their edge
+    /// until somebody throws it, or loses it.
     pub(super) fn coming_across(&self, kind: Kind, side: LeftRight) -> Vec<Way> {
         let (s_m, _) = self.at(self.until);
         let [left_m, right_m] = self.ground.lane_edges_m;
@@ -122,7 +126,13 @@ impl Scene<'_> {
             let line = self.road(s_m + on_m, sign * (edge_m + BEYOND_M));
             let from = Pose { heading: line.heading + 0.5 * std::f64::consts::PI * sign, ..line };
             let begins_s = self.contact_s - way_m / speed_mps;
-            (begins_s > 0.0).then(|| Way::straight(from, speed_mps, begins_s))
+            (begins_s > 0.0).then(|| match kind.group() {
+                KindGroup::Object => {
+                    let sets_off = Some(((begins_s - GAINS_S).max(0.2), speed_mps));
+                    Way { sets_off, ..Way::stands(from) }
+                }
+                _ => Way::straight(from, speed_mps, begins_s),
+            })
         };
         far.into_iter().flat_map(|on_m| ends_m.map(|end_m| way(on_m, end_m))).flatten().collect()
     }

@@ -28,6 +28,7 @@ pub(crate) fn with_near(
             continue;
         }
         let Some(scene) = Scene::of(told, ground, &rollout) else { break };
+        let scene = Scene { turned: extra.near.is_some_and(|near| near.after_turn), ..scene };
         if let Some(with) = scene.with_first(extra, (&draft, &rollout)) {
             (draft, rollout) = with;
             if let Some(near) = extra.near {

@@ -22,6 +22,8 @@ pub(super) struct Scene<'a> {
     pub(super) partner: Option<&'a ActorTrack>,
     pub(super) contact_s: f64,
     pub(super) until: usize,
+    /// Whoever is near is so on the road into which the ego has turned.
+    pub(super) turned: bool,
 }
 
 impl<'a> Scene<'a> {
@@ -35,7 +37,7 @@ impl<'a> Scene<'a> {
         let ego = rollout.ego_track();
         let until = ((contact_s * 10.0) as usize).min(ego.states.len() - 1);
         let partner = rollout.actors.iter().find(|track| track.id == "cp");
-        Some(Self { told, ground, ego, partner, contact_s, until })
+        Some(Self { told, ground, ego, partner, contact_s, until, turned: false })
     }
 
     pub(super) fn front_m(&self) -> f64 {
@@ -47,10 +49,10 @@ impl<'a> Scene<'a> {
         self.ground.beside(self.ego.states[step].position())
     }
 
-    /// A place on the ego's road; where the ego turns, straight on through the junction.
+    /// A place on the ego's road; where the ego turns, straight on through the junction, but for who is met behind its turn.
     pub(super) fn road(&self, s_m: f64, t_m: f64) -> Pose {
         let line_m = self.ground.first_m();
-        if s_m <= line_m || !self.ground.junction {
+        if s_m <= line_m || !self.ground.junction || self.turned {
             return self.ground.pose(s_m, t_m);
         }
         let line = self.ground.pose(line_m, t_m);

@@ -1,14 +1,16 @@
 //! Ways to try for somebody near, by what is told of it.
 
+use crate::nearby::aside::STANDS_AHEAD_M;
 use crate::nearby::scene::{DRIVES_MPS, RIDES_MPS, Scene};
 use crate::nearby::way::{SLOWS_BY_MPS, Way};
 use crate::told::near::{Does, Near};
 use crate::told::others::{Extra, Role};
 use crate::told::sizes::size_of as size_of_kind;
-use crate::usual::WALKS_MPS;
+use crate::usual::{LANE_M, STANDS_MPS, WALKS_MPS};
 use recrash_model::account::{Kind, KindGroup, LeftRight, Origin};
 use recrash_model::geometry::Pose;
 use recrash_model::kinds::PartnerKind;
+use recrash_model::rollout::ActorTrack;
 use recrash_model::scenario::{Actor, StripKind};
 use recrash_model::vehicle::VehicleSpec;
 
@@ -71,11 +73,14 @@ impl<'a> Scene<'a> {
                     list.extend(self.waits_opposite(half_m).iter().map(|way| self.coming_to(way)));
                 }
                 list.extend(self.comes_or_stands(near, self.waits_opposite(half_m)));
+                if !stands {
+                    list.extend(self.oncoming_beyond());
+                }
             }
             Some(Origin::Ahead) => {
                 list.extend(self.loses(half_m));
                 if !stands {
-                    list.extend(self.leads(half_m));
+                    list.extend(self.leads_round(half_m));
                 }
                 list.extend(self.comes_or_stands(near, self.stands_ahead(half_m, 0.0)));
             }
@@ -101,7 +106,12 @@ impl<'a> Scene<'a> {
                     list.extend(self.crosses(left, Does::Drives, half_m));
                     list.extend(self.crosses(right, Does::Drives, half_m));
                 }
-                if stands || untold {
+                if stands {
+                    list.extend(at_kerb(left));
+                    list.extend(at_kerb(right));
+                    list.extend(self.stands_somewhere(half_m));
+                }
+                if untold {
                     list.extend(at_kerb(left));
                     list.extend(at_kerb(right));
                     list.extend(self.waits_opposite(half_m));
@@ -109,7 +119,7 @@ impl<'a> Scene<'a> {
                     list.extend(self.stands_somewhere_beside(right, half_m));
                     list.extend(self.crosses(left, Does::Stands, half_m));
                     list.extend(self.crosses(right, Does::Stands, half_m));
-                    list.extend(self.stands_ahead(half_m, 12.0));
+                    list.extend(self.stands_ahead(half_m, STANDS_AHEAD_M));
                 }
             }
         }
@@ -200,17 +210,64 @@ impl<'a> Scene<'a> {
 const ASIDE_M: f64 = 0.7;
 const OVER_M: f64 = 1.0;
 
+/// Who goes round a thing that the ego then meets leaves its line by so much for it, in so long, as it comes to it. [m, s]
+const ROUND_M: [f64; 3] = [2.2, 1.5, 3.0];
+const ROUND_S: f64 = 1.8;
+
 impl Scene<'_> {
-    /// Along its lane, and aside in it.
+    /// Whether a thing or an animal lies there that the ego meets.
+    fn lies_ahead(&self) -> bool {
+        let still = |track: &ActorTrack| (0..=self.until).all(|step| track.states[step].speed().abs() < STANDS_MPS);
+        let animal = self.told.cp.kind == PartnerKind::Animal && self.partner.is_some_and(still);
+        self.told.thing.is_some() || animal
+    }
+
+    /// Ahead in the ego's lane, and round what lies there, or in a lane beside that.
+    fn leads_round(&self, half_m: f64) -> Vec<Way> {
+        let in_lane = |way: &Way| self.ground.beside(way.from.position).1.abs() < ASIDE_M;
+        let (mut list, beside): (Vec<Way>, Vec<Way>) = self.leads(half_m).into_iter().partition(in_lane);
+        if self.lies_ahead() {
+            list.extend(self.round_thing(&[LeftRight::Left, LeftRight::Right], half_m));
+        }
+        list.extend(beside);
+        list
+    }
+
+    /// Ahead of the ego, in its lane, and round the thing that the ego meets there.
+    fn round_thing(&self, sides: &[LeftRight], half_m: f64) -> Vec<Way> {
+        let thing_m = self.at(self.until).0 + self.front_m();
+        let mut list = Vec::new();
+        for way in self.leads(half_m) {
+            let (s_m, t_m) = self.ground.beside(way.from.position);
+            let from_s = (thing_m - s_m - half_m) / way.speed_mps - ROUND_S;
+            if t_m.abs() < ASIDE_M && from_s > 0.0 {
+                let to = |by_m: f64| sides.iter().map(move |side| (*side, by_m));
+                let aside = |(side, by_m)| Way { shifts_s: Some((from_s, ROUND_S)), ..way.clone().aside(side, by_m) };
+                list.extend(ROUND_M.into_iter().flat_map(to).map(aside));
+            }
+        }
+        list
+    }
+
+    /// Along its lane, and aside in it: to either side in the lane where it is put first before it is put in another.
     fn aside(&self, near: Near, side: Option<LeftRight>, half_m: f64) -> Vec<Way> {
         let drives = Near { does: Does::Drives, ..near };
         let sides = side.map_or(vec![LeftRight::Left, LeftRight::Right], |side| vec![side]);
-        let ways = || self.drives(drives, half_m * 2.0).into_iter().filter(|way| way.speed_mps > 0.0);
+        let ways = self.drives(drives, half_m * 2.0).into_iter().filter(|way| way.speed_mps > 0.0);
         let over = matches!(near.place, Some(Origin::Beside { .. }));
         let by_m: &[f64] = if over { &[OVER_M, ASIDE_M] } else { &[ASIDE_M] };
-        let shifted = |(side, by_m): (LeftRight, f64)| {
-            ways().filter(|way| way.stops_m.is_none()).map(move |way| way.aside(side, by_m))
+        let mut ways: Vec<Way> = ways.filter(|way| way.stops_m.is_none()).collect();
+        // Who comes towards the ego beside the partner is in another lane than that.
+        if near.place == Some(Origin::Opposite) && self.told.origin == Origin::Opposite {
+            let next_m = self.ground.opposing_m + 0.5 * LANE_M;
+            ways.sort_by_key(|way| -self.ground.beside(way.from.position).1 < next_m);
+        }
+        let shifted = |by_m: f64| {
+            let sides = &sides;
+            ways.iter().flat_map(move |way| sides.iter().map(move |side| way.clone().aside(*side, by_m)))
         };
-        by_m.iter().flat_map(|by_m| sides.iter().map(move |side| (*side, *by_m))).flat_map(shifted).collect()
+        let ahead = near.place == Some(Origin::Ahead) && self.lies_ahead();
+        let round = if ahead { self.round_thing(&sides, half_m) } else { Vec::new() };
+        round.into_iter().chain(by_m.iter().flat_map(|by_m| shifted(*by_m))).collect()
     }
 }

@@ -22,6 +22,7 @@ const CHANGES_S: f64 = 3.5;
 const CHANGED_BEFORE_S: f64 = 0.5;
 
 /// How somebody comes to be near: where it is at first, what it drives, and where it goes.
+#[derive(Clone)]
 pub(super) struct Way {
     pub(super) from: Pose,
     pub(super) speed_mps: f64,
@@ -30,6 +31,8 @@ pub(super) struct Way {
     pub(super) slows: bool,
     /// It moves so far to the right before the contact. [m]
     pub(super) shifts_m: f64,
+    /// From when, and for how long, where that is not the usual. [s]
+    pub(super) shifts_s: Option<(f64, f64)>,
     /// It goes backwards.
     pub(super) backs: bool,
     /// It stands at first, and sets off at a time to a speed. [s, m/s]
@@ -46,6 +49,7 @@ impl Way {
             stops_m: None,
             slows: false,
             shifts_m: 0.0,
+            shifts_s: None,
             backs: false,
             sets_off: None,
             by: Vec::new(),
@@ -86,8 +90,9 @@ impl Way {
         let stops = self.stops_m.map(|at_m| when(0.1, Deed::Stop { rate_mps2: BRAKES_MPS2, at_m: Some(at_m) }));
         let slower = Deed::Speed { to_mps: self.speed_mps - SLOWS_BY_MPS, rate_mps2: BRAKES_MPS2 };
         let slows = self.slows.then(|| when(tenth(contact_s - SLOWS_BEFORE_S), slower));
-        let shift = Deed::Shift { to_t_m: self.shifts_m, over_m: CHANGES_S * self.speed_mps };
-        let shifts = (self.shifts_m != 0.0).then(|| when(tenth(contact_s - CHANGES_S - CHANGED_BEFORE_S), shift));
+        let (from_s, over_s) = self.shifts_s.unwrap_or((contact_s - CHANGES_S - CHANGED_BEFORE_S, CHANGES_S));
+        let shift = Deed::Shift { to_t_m: self.shifts_m, over_m: over_s * self.speed_mps };
+        let shifts = (self.shifts_m != 0.0).then(|| when(tenth(from_s), shift));
         ActorPlan {
             speed_mps: self.speed_mps,
             course: self.by.iter().chain([&end]).map(|to| Leg::Curve { to: place(*to), reverse: false }).collect(),

@@ -22,6 +22,9 @@ const PASSED_BESIDE_M: f64 = 3.0;
 const ABREAST_M: f64 = 3.0;
 const BEYOND_M: f64 = 160.0;
 
+/// An ego that is faster than this all the time does not stand. [m/s]
+const STEADY_MPS: f64 = 2.0;
+
 /// Who hides somebody who comes across stands so far short of it; the sine of the least angle across. [m, -]
 const HIDES_M: f64 = 0.8;
 const ACROSS: f64 = 0.7;
@@ -35,7 +38,9 @@ impl Scene<'_> {
         let is = |strips: &[Strip], kind: StripKind| strips.iter().any(|strip| strip.kind == kind);
         let stalls = is(right, StripKind::Stalls);
         let has = |strips: &[Strip]| is(strips, StripKind::Parking) || is(strips, StripKind::Stalls);
-        let ahead_m = self.at(self.until).0 + self.front_m() + PARKED_AHEAD_M + 0.5 * length_m;
+        // Whom it passes is abreast of its front.
+        let far_m = if extra.passed { 0.0 } else { PARKED_AHEAD_M + 0.5 * length_m };
+        let ahead_m = self.at(self.until).0 + self.front_m() + far_m;
         // Nobody is parked in a junction.
         let before_m = if self.ground.junction { self.ground.first_m() - PARKED_AHEAD_M } else { f64::INFINITY };
         let wider_m = 0.5 * (StripKind::Stalls.usual_width_m() - StripKind::Parking.usual_width_m());
@@ -175,10 +180,13 @@ impl Scene<'_> {
             let pose = self.ground.pose(s_m, t_m);
             Place::at(pose.position.x, pose.position.y, pose.heading.to_degrees())
         };
+        // Beside an ego that only slows it drives on at one speed.
+        let steady = (0..=self.until).all(|step| self.mps(step) > STEADY_MPS);
+        let mean_mps = (self.at(self.until).0 - s_m) / (0.1 * self.until.max(1) as f64);
         ActorPlan {
-            speed_mps: self.recorded.speed_mps,
+            speed_mps: if steady { mean_mps } else { self.recorded.speed_mps },
             course: vec![Leg::Curve { to: place(self.at(self.until).0 + ABREAST_M + BEYOND_M), reverse: false }],
-            acts: self.recorded.acts.clone(),
+            acts: if steady { Vec::new() } else { self.recorded.acts.clone() },
             ..ActorPlan::standing(place(s_m + ABREAST_M))
         }
     }

@@ -9,7 +9,7 @@ use crate::told::queue::{leaves_lane, waits_ahead};
 use crate::told::side::{Turning, size_of};
 use crate::usual::{LANE_M, LEAD_GAP_M, ROOM_M};
 use recrash_model::account::{ContactState, ControlDevice, LaneWord, LeftRight, Origin};
-use recrash_model::geometry::Vec2;
+use recrash_model::geometry::{Pose, Vec2};
 use recrash_model::scenario::{ActorPlan, Deed, Leg, Place, Trigger};
 
 /// From the front of an ego that leaves its lane behind somebody to that one, where it is touched. [m]
@@ -27,6 +27,10 @@ const GOES_MPS2: f64 = 1.5;
 /// Who changes into the ego's lane is no slower, and takes so long. [m/s, s]
 const MERGES_MPS: f64 = 5.0;
 const MERGES_S: f64 = 3.5;
+
+/// Who is on its way into a space at the kerb is so far out of the lane, and at such an angle. [m, rad]
+const HALF_PARKED_M: f64 = 1.5;
+const HALF_PARKED_RAD: f64 = 0.4;
 
 /// Who backs out of a space does so over this way, to where its rear is so far from the middle of the ego's lane. [m, m/s, m/s^2]
 const BACKS_OUT_M: f64 = 4.0;
@@ -59,6 +63,7 @@ impl Scene<'_> {
             None if at_kerb => self.ground.pose(s_m + ahead_m, 0.0),
             None => self.ahead(step, ahead_m),
         };
+        let pose = if extra.parks { self.half_parked(pose) } else { pose };
         // Before the light.
         let controlled = self.told.sv.control.is_some_and(|said| said.device == ControlDevice::Signal);
         let line_m = self.ground.first_m();
@@ -86,6 +91,12 @@ impl Scene<'_> {
         let acts = vec![when(up_s, Deed::Speed { to_mps: speed_mps, rate_mps2: GOES_MPS2 }), next(stop)];
         let begins_m = if again.is_some() { 0.0 } else { -up_m };
         Some(ActorPlan { course, acts, ..ActorPlan::standing(at(begins_m)) })
+    }
+
+    /// Half out of the lane, with its rear to the kerb on the right.
+    fn half_parked(&self, pose: Pose) -> Pose {
+        let right = Vec2::from_heading(pose.heading).left() * -HALF_PARKED_M;
+        Pose { position: pose.position + right, heading: pose.heading + HALF_PARKED_RAD }
     }
 
     /// From the ego to the front of a partner that stands in the queue ahead of it, or beside it at the kerb. [m]

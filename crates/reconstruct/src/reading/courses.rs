@@ -202,8 +202,9 @@ impl Told {
         if self.sv.state != ContactState::Moving || self.thing.is_some() {
             return;
         }
-        let turns = steps(partner, |act| act == Act::Turn).into_iter().min();
-        let reacts = steps(sv, |act| matches!(act, Act::Slow | Act::Swerve | Act::Drift)).into_iter().min();
+        let turns = steps(partner, |act| matches!(act, Act::Turn | Act::PullOut | Act::Enter)).into_iter().min();
+        let answers = |act| matches!(act, Act::Slow | Act::Swerve | Act::Drift | Act::LaneChange);
+        let reacts = steps(sv, answers).into_iter().min();
         let turning = matches!(self.cp.turning, Turning::Left | Turning::Right);
         self.sv.reacts = turning && !self.cp.stood_first && turns.is_some() && turns < reacts;
         // Who swerves from somebody that comes at it does so away from it.

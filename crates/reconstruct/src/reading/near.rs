@@ -1,6 +1,6 @@
 //! What is told of others who have no part in what the ego does.
 
-use crate::reading::story::is_parked;
+use crate::reading::story::{is_parked, stands_in_lane};
 use crate::reading::words::text;
 use crate::told::near::{Does, First, Near};
 use recrash_model::account::{Act, ActFact, Kind, KindGroup, LeftRight, Origin, Other};
@@ -100,7 +100,7 @@ impl Near {
             let rolls = !fixed && other.acts.iter().any(|fact| !fact.after_contact && moves(fact.act));
             let does = if rolls { Does::Crosses } else { Does::Stands };
             let (across, in_lane, also, first) = (false, false, None, First::Untold);
-            return Some(Self { place, across, does, in_lane, also, first, number });
+            return Some(Self { place, across, does, after_turn: false, in_lane, also, first, number });
         }
         let said = |of: &[&str]| of.iter().any(|word| words.contains(word));
         let place = other.place.as_ref().map(|fact| fact.value).or_else(|| {
@@ -153,13 +153,10 @@ impl Near {
             _ if left && !on_wheels => First::Left,
             _ => First::Untold,
         };
-        let in_lane = before.iter().any(|fact| IN_LANE.iter().any(|words| text(&fact.source).contains(words)));
-        Some(Self { place, across, does, in_lane, also, first, number })
+        let in_lane = stands_in_lane(other);
+        Some(Self { place, across, does, after_turn: false, in_lane, also, first, number })
     }
 }
-
-/// Words for one that stands in a lane.
-const IN_LANE: [&str; 6] = ["in-lane", "in lane", "in the lane", "in its lane", "double-parked", "double parked"];
 
 /// Whether an act of somebody who is near may be seen before the contact: that it did not yield is no way of its own.
 fn is_seen(fact: &ActFact) -> bool {

@@ -94,6 +94,8 @@ pub(super) fn wanted(told: &Told, account: &Account) -> Vec<Extra> {
             let before = list.iter().filter(|extra| extra.role == Role::Near).count();
             let near = Near::of(other, &text(&other.kind.source), before).filter(|_| !other.touched_partner);
             let (awaited, several) = (story.is_near(other), other.several);
+            let after_turn = story.is_after_turn(told, other);
+            let near = near.map(|near| Near { after_turn, ..near });
             let near = near.map(|near| if told.dropped == Some(number) { near.ahead() } else { near });
             near.map(|near| Extra { awaited, several, ..Extra::near(near, number, kind) })
         };
@@ -134,11 +136,14 @@ pub(super) fn wanted(told: &Told, account: &Account) -> Vec<Extra> {
                 let awaited = story.is_near(other) || other.several;
                 let behind = role == Role::Obstacle && story.is_back(other);
                 let between = role == Role::Beside && story.is_between(told, other);
+                let parks = role == Role::Lead && is_parking(other);
+                let passed = role == Role::Kerb && story.goes_by(told, other);
                 let stays = role == Role::Walker && stays_close(other);
                 list.push(Extra {
                     of: vec![number],
                     kind,
                     goes,
+                    parks,
                     parked,
                     first,
                     again,
@@ -146,6 +151,7 @@ pub(super) fn wanted(told: &Told, account: &Account) -> Vec<Extra> {
                     awaited,
                     behind,
                     between,
+                    passed,
                     stays,
                     opposite: other.place.as_ref().is_some_and(|fact| fact.value == Origin::Opposite),
                     several: other.several,
@@ -160,6 +166,12 @@ pub(super) fn wanted(told: &Told, account: &Account) -> Vec<Extra> {
     }
     for_reasons(&story, told, &mut list);
     list
+}
+
+/// Whether somebody is on its way into a space at the kerb: "a parallel parking van".
+fn is_parking(other: &Other) -> bool {
+    let acts = before_contact(other).map(|fact| text(&fact.source));
+    acts.chain([text(&other.kind.source)]).any(|words| words.contains("parallel parking") || words.ends_with("parking"))
 }
 
 /// Whether somebody with a siren is told of without a place or a deed: it is nobody who stands ahead.

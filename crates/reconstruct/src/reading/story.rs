@@ -7,7 +7,8 @@ use crate::told::queue::sets_off;
 use crate::told::side::Turning;
 use crate::told::zones::side_of;
 use recrash_model::account::{
-    Account, Act, ActFact, ContactState, KindGroup, LeftRight, Origin, Other, PlaceKind, SignalState, StandReason,
+    Account, Act, ActFact, ContactState, ControlDevice, KindGroup, LeftRight, Origin, Other, PlaceKind, SignalState,
+    Source, StandReason,
 };
 use recrash_model::template::Movement;
 
@@ -25,6 +26,47 @@ const BLOCKS_WITHIN: usize = 16;
 /// Whether somebody is told to be parked.
 pub(super) fn is_parked(other: &Other) -> bool {
     text(&other.kind.source).contains("parked") || before_contact(other).any(|fact| text(&fact.source).contains("park"))
+}
+
+/// Whether one that is parked is not in the way of an ego that goes round something: it is parked on the side to which that goes, or the
+/// ego keeps its lane, and the partner is beside that.
+fn keeps_to_kerb(told: &Told, place: Option<Origin>) -> bool {
+    let side = match place {
+        Some(Origin::Beside { side } | Origin::Parked { side: Some(side) }) => Some(side),
+        _ => None,
+    };
+    let beside = matches!(told.origin, Origin::Beside { .. } | Origin::Parked { side: Some(_) });
+    side.is_some() && side == told.sv.aside || told.sv_aside().is_none() && told.thing.is_none() && beside
+}
+
+/// Whether somebody in the lane beside the ego changes lanes towards it: "a car in the lane to its right changed lanes to the left".
+fn comes_in(other: &Other) -> bool {
+    let next =
+        |source: &Source| ["adjacent", "next", "beside", " of the "].iter().any(|word| text(source).contains(word));
+    let place = other.place.as_ref().filter(|fact| next(&fact.source)).map(|fact| fact.value);
+    before_contact(other).any(|fact| {
+        let towards = |side: LeftRight| place == Some(Origin::Beside { side: side.other() });
+        fact.act == Act::LaneChange && !fact.begun && fact.side.is_some_and(towards)
+    })
+}
+
+/// Whether somebody changes lanes into the ego's, and no words tell to which side that is: "a van cut in", "a van encroached".
+fn cuts_in(other: &Other) -> bool {
+    let into = |fact: &ActFact| {
+        let words = text(&fact.source);
+        let says = |of: &[&str]| of.iter().any(|word| words.contains(word));
+        fact.act == Act::LaneChange && says(&["cut", "in front of", "ahead of"])
+            || fact.act == Act::Drift && says(&["encroach"])
+    };
+    before_contact(other).any(into)
+}
+
+/// Words for one that stands in a lane.
+const IN_LANE: [&str; 6] = ["in-lane", "in lane", "in the lane", "in its lane", "double-parked", "double parked"];
+
+/// Whether somebody is told to stand in a lane: at no kerb.
+pub(super) fn stands_in_lane(other: &Other) -> bool {
+    before_contact(other).any(|fact| IN_LANE.iter().any(|words| text(&fact.source).contains(words)))
 }
 
 /// Whether the ego stands on though its light has turned green, and lets in who comes from beside the road: the queue ahead, of which no
@@ -86,19 +128,23 @@ impl Story<'_> {
         span(&other.kind.source).zip(begins).is_some_and(|((named, _), begins)| named < begins)
     }
 
-    /// Whether somebody is named with the words that an ego which had stood slowed again, on its way.
+    /// Whether somebody is named with the words that an ego which had stood slowed again, on its way, or is told to have set out between.
     pub(super) fn is_slowed_for_later(&self, told: &Told, other: &Other) -> bool {
         let last = self.account.sv.acts.iter().rfind(|fact| !fact.after_contact);
         let slows = last.filter(|fact| fact.act == Act::Slow && told.sv.state == ContactState::Moving);
-        let Some((_, end)) = slows.and_then(|fact| span(&fact.source)) else { return false };
+        let Some((slows, (_, end))) = slows.and_then(|fact| Some((fact.step, span(&fact.source)?))) else {
+            return false;
+        };
         let named = span(&other.kind.source).is_some_and(|(start, _)| (end..end + NAMED_WITHIN).contains(&start));
-        named && told.sv.stood_first
+        let off = self.account.sv.acts.iter().filter(|fact| fact.act == Act::SetOff).map(|fact| fact.step).max();
+        let begins = before_contact(other).map(|fact| fact.step).min();
+        let between = off.zip(begins).is_some_and(|(off, begins)| off < begins && begins <= slows);
+        (named || between) && told.sv.stood_first
     }
 
     /// Whether somebody on foot, or an animal, is whom the ego slowed or stood for.
     pub(super) fn is_met(&self, other: &Other) -> bool {
-        let Some((named, end)) = span(&other.kind.source) else { return false };
-        let before = self.reactions().any(|(start, _)| (end..end + NAMED_BEFORE).contains(&start));
+        let Some((named, _)) = span(&other.kind.source) else { return false };
         let turns = self.account.sv.acts.iter().filter(|fact| fact.act == Act::Turn && !fact.after_contact);
         let turns = turns
             .filter_map(|fact| span(&fact.source))
@@ -106,10 +152,23 @@ impl Story<'_> {
         let reacts = self.reactions().next().is_some();
         let crosses =
             |fact: &ActFact| matches!(fact.act, Act::Cross | Act::Enter | Act::RunRed | Act::PullOut | Act::UTurn);
-        self.is_near(other) || reacts && before_contact(other).any(crosses) || before || turns
+        self.is_near(other) || reacts && before_contact(other).any(crosses) || self.is_named_before(other) || turns
     }
 
-    /// Whether who stood drove on; and whether it did so before the ego did.
+    /// Whether somebody is told behind a turn that the ego has done: "after it turned right, it drove past an oncoming van".
+    pub(super) fn is_after_turn(&self, told: &Told, other: &Other) -> bool {
+        let turn = self.account.sv.acts.iter().rfind(|fact| fact.act == Act::Turn && !fact.after_contact);
+        let turned = turn.filter(|fact| !fact.begun && told.sv.turned).and_then(|fact| span(&fact.source));
+        turned.zip(span(&other.kind.source)).is_some_and(|((_, end), (named, _))| end < named)
+    }
+
+    /// Whether somebody is named a little before the words that the ego slowed or stood.
+    fn is_named_before(&self, other: &Other) -> bool {
+        let named = span(&other.kind.source);
+        named.is_some_and(|(_, end)| self.reactions().any(|(start, _)| (end..end + NAMED_BEFORE).contains(&start)))
+    }
+
+    /// Whether who stood drove on, and is not told to have stopped again; and whether it did so before the ego did.
     pub(super) fn drives_on(&self, other: &Other) -> Option<bool> {
         let stood = |fact: &&ActFact| matches!(fact.act, Act::Stop | Act::Hold) && !fact.after_contact;
         let since = self.account.sv.acts.iter().chain(&other.acts).filter(stood).map(|fact| fact.step).min()?;
@@ -117,6 +176,10 @@ impl Story<'_> {
             fact.step > since && matches!(fact.act, Act::SetOff | Act::Follow | Act::Accelerate | Act::Leave)
         };
         let at = before_contact(other).find(drives)?.step;
+        let stops = |fact: &ActFact| matches!(fact.act, Act::Hold | Act::Stop) && fact.step > at;
+        if before_contact(other).any(stops) {
+            return None;
+        }
         let moves = |fact: &&ActFact| {
             let moves = matches!(fact.act, Act::SetOff | Act::Follow | Act::Enter | Act::LaneChange | Act::Turn);
             moves && fact.step > since && !fact.after_contact
@@ -150,6 +213,10 @@ impl Story<'_> {
             return None;
         }
         match other.kind.value.group() {
+            // Who rides into the ego's lane from beside is in it.
+            KindGroup::Cyclist if before_contact(other).any(|fact| fact.act == Act::LaneChange) => {
+                self.vehicle(told, other)
+            }
             KindGroup::OnFoot | KindGroup::Cyclist => self.is_met(other).then_some(Role::Walker),
             KindGroup::Animal => self.is_met(other).then_some(Role::Animal),
             KindGroup::Car | KindGroup::Truck | KindGroup::Motorcycle => self.vehicle(told, other),
@@ -238,6 +305,11 @@ impl Story<'_> {
         }
     }
 
+    /// Whether the ego is on its way past somebody where it is touched.
+    pub(super) fn goes_by(&self, told: &Told, other: &Other) -> bool {
+        told.sv.state == ContactState::Moving && self.passes_at(other).is_some() && !self.is_back(other)
+    }
+
     /// Whether the words right behind somebody say that it blocks the junction: "a van that was blocking the intersection".
     fn blocks_junction(&self, other: &Other) -> bool {
         let reason = self.account.sv.reasons.iter().find(|fact| fact.value == StandReason::BlockedJunction);
@@ -245,24 +317,29 @@ impl Story<'_> {
         told.is_some_and(|((start, _), (_, end))| (end..end + BLOCKS_WITHIN).contains(&start))
     }
 
-    /// Whether somebody was about to change lanes.
+    /// Whether somebody was about to change lanes, or to come over from beside: "a van in the next lane headed towards its lane".
     fn merges_yet(&self, other: &Other) -> bool {
-        other.acts.iter().any(|fact| fact.act == Act::LaneChange && fact.begun && !fact.after_contact)
+        let beside = matches!(other.place.as_ref().map(|fact| fact.value), Some(Origin::Beside { .. }));
+        let comes = |act: Act| act == Act::LaneChange || beside && matches!(act, Act::Drift | Act::Swerve);
+        other.acts.iter().any(|fact| comes(fact.act) && fact.begun && !fact.after_contact)
     }
 
     /// Whether the ego moves over in its lane, or out of it, away from the side from which somebody comes.
     fn makes_room(&self, told: &Told, other: &Other) -> bool {
         let away = told.sv.aside.map(LeftRight::other).filter(|_| told.sv.turning == Turning::No);
-        away.is_some() && away == self.came_from(other)
+        away.is_some() && away == self.came_from(told, other)
     }
 
-    /// From which side somebody changes lanes.
-    fn came_from(&self, other: &Other) -> Option<LeftRight> {
+    /// From which side somebody changes lanes: who cuts in, and is not told from where, does so from the side from which the ego swerves.
+    fn came_from(&self, told: &Told, other: &Other) -> Option<LeftRight> {
         let changes =
             before_contact(other).find(|fact| matches!(fact.act, Act::LaneChange | Act::PullOut | Act::Swerve));
         match other.place.as_ref().map(|fact| fact.value) {
             Some(Origin::Beside { side }) => Some(side),
-            _ => changes.and_then(|fact| fact.side).map(LeftRight::other),
+            _ => changes
+                .and_then(|fact| fact.side)
+                .or_else(|| told.sv.aside.filter(|_| cuts_in(other)))
+                .map(LeftRight::other),
         }
     }
 
@@ -284,15 +361,17 @@ impl Story<'_> {
             return Some(Role::Beside);
         }
         if is_parked(other) && !did(&[Act::PullOut, Act::SetOff, Act::Follow, Act::Reverse]) {
-            let double = said(&["double"]) || before_contact(other).any(|fact| text(&fact.source).contains("double"));
+            let double = said(&["double"]) || stands_in_lane(other);
             let waits =
                 because(StandReason::BlockedPath) || because(StandReason::LeadVehicle) || place == Some(Origin::Ahead);
-            let blocks = near && (waits || double);
-            return match (other.several, goes_round(told) && told.thing.is_none_or(|thing| thing != other.kind.value)) {
+            let named_before = double && place.is_none() && self.is_named_before(other);
+            let blocks = near && (waits || double) || named_before;
+            let round = goes_round(told) && told.thing.is_none_or(|thing| thing != other.kind.value);
+            return match (other.several, round && !keeps_to_kerb(told, place)) {
                 (true, _) => Some(Role::Kerb),
                 (false, true) => Some(Role::Obstacle),
                 (false, false) if blocks => Some(Role::Lead),
-                // Who is double-parked stands in a lane.
+                // Who is double-parked, or parked in a lane, stands there.
                 (false, false) if double => matches!(place, Some(Origin::Beside { .. })).then_some(Role::Beside),
                 (false, false) => (!did(&[Act::Park])).then_some(Role::Kerb),
             };
@@ -350,17 +429,23 @@ impl Story<'_> {
             let junction = told.place == PlaceKind::Intersection || turns || said(&["cross"]) || across;
             return junction.then_some(if turns_left { Role::Oncoming } else { Role::Crosser });
         }
+        // At a stop sign whom it yields to, of whom no more is told, comes along the crossing road.
+        let sign = told.sv.control.is_some_and(|said| said.device == ControlDevice::StopSign);
+        if sign && near && acts_not && place.is_none() && !ahead && !queue && because(StandReason::Yield) {
+            return Some(Role::Crosser);
+        }
         let leaves = did(&[Act::LaneChange, Act::Enter, Act::PullOut, Act::Cross, Act::Reverse, Act::Pass, Act::Drift]);
         let pulls_out = did(&[Act::PullOut]) && !told.comes_from_aside();
         let came_over = did(&[Act::LaneChange])
+            || cuts_in(other) && self.makes_room(told, other)
             || pulls_out
             || beside && did(&[Act::Swerve, Act::SetOff])
-            || ahead && near && did(&[Act::Drift])
+            || (ahead && near || beside && (near || self.is_named_before(other))) && did(&[Act::Drift])
             || self.merges_yet(other);
         let merges = came_over && !did(&[Act::Hold, Act::Stop, Act::Turn, Act::Cross]);
         let keeps_lane = is_straight(told) || self.makes_room(told, other);
         if merges
-            && (near || reacts || self.makes_room(told, other))
+            && (near || reacts || comes_in(other) || self.makes_room(told, other))
             && !other.several
             && place != Some(Origin::Behind)
             && keeps_lane
@@ -401,7 +486,13 @@ impl Story<'_> {
         }
         let slows = said(&["slow"]) || did(&[Act::Slow, Act::Turn, Act::Park, Act::Stop]) && !did(&[Act::Hold]);
         let moves = matches!(told.sv.state, ContactState::Moving) && !sets_off(told);
-        Some(if slows && moves { Role::Slower } else { Role::Lead })
+        // Who drives on ahead stands nowhere.
+        let drives = did(&[Act::Follow]) && !did(&[Act::Hold, Act::Stop]) && !queue;
+        match moves {
+            true if slows => Some(Role::Slower),
+            true if drives => None,
+            _ => Some(Role::Lead),
+        }
     }
 
     /// On which side of the ego somebody is, or from which it comes.
@@ -418,7 +509,7 @@ impl Story<'_> {
             .or(Some(LeftRight::Right)),
             // Who changes to its right comes from the left.
             // From the lane beside it of which is told.
-            _ if role == Role::Merger => self.came_from(other).or(match told.origin {
+            _ if role == Role::Merger => self.came_from(told, other).or(match told.origin {
                 Origin::Beside { side } => Some(side),
                 _ => None,
             }),

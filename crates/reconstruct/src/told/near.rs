@@ -43,6 +43,8 @@ pub(crate) struct Near {
     pub(crate) place: Option<Origin>,
     pub(crate) across: bool,
     pub(crate) does: Does,
+    /// It is told behind a turn of the ego that is over: on the road into which that turned.
+    pub(crate) after_turn: bool,
     /// It is told to stand in a lane: at no kerb.
     pub(crate) in_lane: bool,
     /// Another deed on the same way.

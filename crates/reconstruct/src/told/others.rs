@@ -104,6 +104,8 @@ pub(crate) struct Extra {
     pub(crate) kind: Kind,
     /// Who stands ahead drives on before the ego or the partner does.
     pub(crate) goes: bool,
+    /// Who stands ahead is told to be parking beside the lane.
+    pub(crate) parks: bool,
     /// Is told to be parked.
     pub(crate) parked: bool,
     /// It does so before the ego moves between two stops.
@@ -116,6 +118,8 @@ pub(crate) struct Extra {
     pub(crate) awaited: bool,
     /// The ego has gone round it, and is back in its lane.
     pub(crate) behind: bool,
+    /// The ego is told to pass who is parked: they are abreast.
+    pub(crate) passed: bool,
     /// The partner is told to pass between the ego and it.
     pub(crate) between: bool,
     /// Who is on foot is told to stay where it is, and not to cross.
@@ -138,12 +142,14 @@ impl Extra {
             of: Vec::new(),
             kind: Kind::Vehicle,
             goes: false,
+            parks: false,
             parked: false,
             first: false,
             again: false,
             late: false,
             awaited: true,
             behind: false,
+            passed: false,
             between: false,
             stays: false,
             opposite: false,

@@ -127,3 +127,14 @@ fn a_fence_that_is_told_of_stands_beside_the_way() {
     assert_eq!(near.kind, PartnerKind::FixedObject);
     assert!(near.states.iter().all(|state| state.speed() == 0.0));
 }
+
+const LIES_AHEAD: &str = "The AV was traveling east on Elm Street when a sedan ahead of the AV continued forward. The front of the AV made contact with a dog that was lying in \
+                          the road.";
+
+#[test]
+fn who_drives_ahead_of_something_that_lies_in_the_lane_has_gone_round_it_there() {
+    let shown = made(&told(LIES_AHEAD));
+    let (near, ego, last) = (track(&shown, "near"), shown.rollout.ego_track(), before_contact(&shown));
+    assert!((near.states[0].y - ego.states[0].y).abs() < 0.5, "{:?}", near.states[0]);
+    assert!(near.states[last].x > ego.states[last].x && (near.states[last].y - ego.states[last].y).abs() > 1.2);
+}

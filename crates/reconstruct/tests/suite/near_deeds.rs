@@ -1,8 +1,8 @@
 //! Others who have no part in what the ego does turn, pull out, go aside, pull over or come across, as they are told to; and a rollout in
 //! which they do not does not pass for it.
 
-use crate::others::{shown_but, track};
-use crate::ways::{before_contact, degrees_between};
+use crate::others::{shown_but, told, track};
+use crate::ways::{before_contact, degrees_between, made};
 use recrash_model::kinds::PartnerKind;
 use recrash_model::scenario::{Actor, ActorPlan, Deed, MapSpec, StripKind};
 
@@ -82,4 +82,35 @@ fn who_turns_and_drifts_does_both_at_a_junction_of_the_street() {
     let MapSpec::G(map) = &shown.draft.map else { panic!("a graph") };
     assert_eq!(map.junctions.len(), 1);
     assert!(map.roads[0].left.iter().any(|strip| strip.kind == StripKind::Parking));
+}
+
+const ROUND_IT: &str = "The AV was traveling south in the center lane of three lanes on Elm Street. A sedan ahead of the AV swerved to avoid a mattress, and the front of the AV \
+                        made contact with the mattress.";
+const LETS_BY: &str = "The AV was traveling south on Elm Street toward the intersection with Oak Street, about to make a left turn onto Oak Street. A sedan to the left of the AV \
+                       passed the AV. The AV began to make the left turn, and a van behind the AV made contact with the rear right of the AV.";
+
+#[test]
+fn who_swerves_round_a_thing_ahead_was_in_the_egos_lane_and_leaves_it_late() {
+    let shown = shown_but(ROUND_IT, "near", keeps_line);
+    let (near, last) = (track(&shown, "near"), before_contact(&shown));
+    let ego = shown.rollout.ego_track();
+    let aside_m = |step: usize| (near.states[step].y - ego.states[0].y).abs();
+    assert!(aside_m(0) < 0.5 && aside_m(last) > 1.2, "{:?}", near.states[last]);
+    assert!(aside_m(last.saturating_sub(50)) < 0.5, "{:?}", near.states[last - 50]);
+}
+
+#[test]
+fn what_rolls_into_the_road_lies_at_its_edge_before() {
+    let shown = made(&told(RUNS));
+    let (near, last) = (track(&shown, "near"), before_contact(&shown));
+    assert!(near.states[0].speed() == 0.0 && near.states[0].y - near.states[last].y < 8.0, "{:?}", near.states[0]);
+}
+
+#[test]
+fn an_ego_that_turns_left_lets_somebody_by_in_a_lane_on_its_left() {
+    let shown = shown_but(LETS_BY, "near", stands);
+    let (near, last) = (track(&shown, "near"), before_contact(&shown));
+    let ego = shown.rollout.ego_track();
+    assert!(near.states[0].x < ego.states[0].x && near.states[last].x > ego.states[last].x, "{:?}", near.states[last]);
+    assert!((2.5..4.5).contains(&(near.states[0].y - ego.states[0].y)), "{:?}", near.states[0]);
 }

@@ -2,6 +2,7 @@
 
 use crate::ways::{before_contact, degrees_between, made, partner, speeds, story};
 use recrash_model::account::{Account, Fact};
+use recrash_model::geometry::Vec2;
 use recrash_model::kinds::PartnerKind;
 use recrash_model::metrics::{CheckKind, CheckResult};
 use recrash_model::rollout::ActorTrack;
@@ -570,4 +571,141 @@ fn slow_traffic_ahead_of_an_ego_that_drifts_slows_ahead() {
     let (slower, last) = (track(&shown, "slower"), before_contact(&shown));
     assert!(slower.states[last].x > shown.rollout.ego_track().states[last].x + 4.0);
     assert!(slower.states[last].speed() < slower.states[0].speed() - 0.8);
+}
+
+const COMES_IN: &str = "The AV was traveling north in the center lane of three lanes on Elm Street when a hatchback in the adjacent right lane changed lanes to the left, and \
+                        the test driver disengaged.";
+const CUTS_IN: &str = "The AV was traveling south in the right lane on Elm Street when a hatchback cut into the lane of the AV. The AV swerved to the left and the front left \
+                       of the AV made contact with the right side of a pickup truck that was traveling in the left lane.";
+const HEADS_OVER: &str = "The AV was traveling north in the center lane on Elm Street. A box truck in the next lane to the right began to drift toward the lane of the AV, so the \
+                          AV slowed to a stop.";
+const RIDES_IN: &str = "The AV was traveling north on Elm Street when a bicyclist changed lanes to the left in front of the AV, and the AV slowed.";
+const BY_PARKED: &str = "The AV was traveling north in the left lane on Elm Street and was passing a parked bus when a sedan in the right lane moved to the left, and the front \
+                         left of the sedan made contact with the front right of the AV.";
+const MOVES_ON: &str =
+    "The AV was traveling north on Elm Street. Traffic ahead of the AV was moving. The AV slowed to make a delivery.";
+const STEPS_OUT: &str = "The AV was stopped at a red light at the intersection of Elm Street and Oak Street. When the light turned green, the AV began to move. A pedestrian \
+                         then stepped off the curb and crossed the street, and the AV braked. A van behind the AV accelerated and the front of the van made contact with the \
+                         rear of the AV.";
+const IN_LANE: &str = "The AV was traveling west in the right lane on Elm Street when it approached a delivery van that was parked in-lane, and the AV slowed to a stop to yield \
+                       to the delivery van.";
+const MAKES_WAY: &str = "The AV was traveling east on Elm Street and moved to the right to make room for an oncoming bus. The front right of the AV made contact with the left \
+                         side mirror of a sedan that was parked at the curb.";
+const ANSWERS: &str = "The AV was traveling east in the right lane of two lanes on Elm Street. A sedan pulled out of a driveway on the right and entered the lane of the AV. The \
+                       AV braked and changed lanes to the left. The sedan continued turning left and the left side of the sedan made contact with the front of the AV.";
+
+/// Whether somebody who was beside the ego, to its left or right, is ahead of it in the lane where that came.
+fn has_come_in(shown: &Reconstruction, left: f64) -> bool {
+    let (merger, last) = (track(shown, "merger"), before_contact(shown));
+    let ego = &shown.rollout.ego_track().states;
+    let ahead = Vec2::from_heading(ego[0].heading);
+    let aside_m = |step: usize| ahead.cross(merger.states[step].position() - ego[0].position());
+    let before_m = ahead.dot(merger.states[last].position() - ego[last].position());
+    left * aside_m(0) > 2.5 && aside_m(last).abs() < 1.0 && before_m > 4.0
+}
+
+#[test]
+fn who_changes_lanes_towards_the_ego_comes_into_its_lane_though_it_does_not_slow_for_that() {
+    let keeps = |merger: &mut Actor| merger.plan.acts.retain(|act| !matches!(act.deed, Deed::Shift { .. }));
+    assert!(has_come_in(&shown_but(COMES_IN, "merger", keeps), -1.0));
+    // Who cuts in, and is not told from where, comes from the side from which the ego swerves.
+    assert!(has_come_in(&shown_but(CUTS_IN, "merger", keeps), -1.0));
+    let other_way =
+        CUTS_IN.replace("the right lane on", "the left lane on").replace("swerved to the left", "swerved to the right");
+    let other_way = other_way
+        .replace("front left of the AV", "front right of the AV")
+        .replace("the right side of a", "the left side of a");
+    assert!(has_come_in(&made(&told(&other_way.replace("in the left lane.", "in the right lane."))), 1.0));
+}
+
+#[test]
+fn who_heads_over_or_rides_into_the_egos_lane_is_why_it_slows() {
+    assert!(has_come_in(&made(&told(HEADS_OVER)), -1.0));
+    let shown = made(&told(RIDES_IN));
+    assert!(track(&shown, "merger").kind == PartnerKind::Cyclist && has_come_in(&shown, -1.0));
+}
+
+#[test]
+fn one_that_is_parked_and_passed_is_abreast_where_the_partner_comes_over() {
+    let shown = made(&told(BY_PARKED));
+    let (kerb, ego) = (track(&shown, "kerb"), shown.rollout.ego_track().states[before_contact(&shown)]);
+    assert!(kerb.kind == PartnerKind::Bus && (kerb.states[0].x - ego.x).abs() < 4.0, "{:?}", kerb.states[0]);
+    assert!((kerb.states[0].y - ego.y).abs() > 4.0, "beside the lanes");
+}
+
+#[test]
+fn traffic_that_is_told_to_move_ahead_of_an_ego_that_moves_does_not_stand() {
+    let shown = shown_but(MOVES_ON, "near", stands_from_the_start);
+    let near = track(&shown, "near");
+    assert!(near.states[..=before_contact(&shown)].iter().all(|state| state.speed() > 2.0));
+    assert!(shown.rollout.actors.iter().all(|track| track.id != "lead"));
+}
+
+#[test]
+fn who_steps_out_after_the_ego_has_set_off_does_not_cross_before() {
+    let shown = made(&told(STEPS_OUT));
+    let (walker, ego) = (track(&shown, "walker"), shown.rollout.ego_track());
+    let off = ego.states.iter().position(|state| state.speed() > 1.0).expect("it sets off");
+    assert!(walker.states[off].y < ego.states[off].y - 2.0, "{:?}", walker.states[off]);
+    let last = before_contact(&shown);
+    assert!(walker.states[last].y > ego.states[last].y - 2.0 && walker.states[last].x > ego.states[last].x);
+}
+
+#[test]
+fn one_parked_in_the_lane_for_which_the_ego_stops_stands_ahead_in_it() {
+    let shown = made(&told(IN_LANE));
+    let (lead, ego) = (track(&shown, "lead"), shown.rollout.ego_track().states[before_contact(&shown)]);
+    assert!(lead.kind == PartnerKind::Van && (lead.states[0].y - ego.y).abs() < 0.5, "{:?}", lead.states[0]);
+    assert!(shown.rollout.actors.iter().all(|track| !matches!(track.id.as_str(), "oncoming" | "kerb")));
+}
+
+#[test]
+fn who_comes_towards_an_ego_that_goes_aside_for_it_comes_by() {
+    let shown = shown_but(MAKES_WAY, "oncoming", |oncoming| moved(&mut oncoming.plan, 150.0, 0.0));
+    let (oncoming, last) = (track(&shown, "oncoming"), before_contact(&shown));
+    let ego = shown.rollout.ego_track();
+    assert!(oncoming.kind == PartnerKind::Bus && ego.states[last].y < ego.states[0].y - 0.3);
+    assert!(oncoming.states[0].x > ego.states[0].x && oncoming.states[last].x < ego.states[last].x);
+}
+
+#[test]
+fn an_ego_that_changes_lanes_for_who_comes_out_does_so_after_that() {
+    let shown = made(&story(ANSWERS));
+    let ((states, _), ego) = (partner(&shown), shown.rollout.ego_track());
+    let moves = ego.states.iter().position(|state| state.y > ego.states[0].y + 0.5).expect("it changes lanes");
+    // The front of the sedan is out of the driveway.
+    assert!(states[moves].y > states[0].y + 1.0, "{:?} at {moves}", states[moves]);
+}
+
+const SIGN: &str = "The AV was traveling north on Elm Street and came to a stop at a four-way stop at the intersection with Oak Street to yield to another vehicle.";
+const STEADY: &str = "The AV was traveling north in the center lane of three lanes on Elm Street. An SUV was traveling in the right lane. The AV slowed.";
+
+#[test]
+fn whom_the_ego_yields_to_at_a_stop_sign_is_on_the_crossing_road() {
+    let shown = shown_but(SIGN, "crosser", stands_from_the_start);
+    assert!(shown.rollout.actors.iter().all(|track| track.id != "lead"));
+    // Who is told to stand ahead does.
+    let ahead = made(&told(&SIGN.replace("another vehicle", "another vehicle that was stopped ahead of the AV")));
+    assert!(ahead.rollout.actors.iter().all(|track| track.id != "crosser"));
+}
+
+#[test]
+fn who_drives_abreast_does_not_brake_with_an_ego_that_slows() {
+    let shown = shown_but(STEADY, "abreast", |abreast| moved(&mut abreast.plan, 60.0, 0.0));
+    let abreast = track(&shown, "abreast");
+    let speeds: Vec<f64> = (0..=before_contact(&shown)).map(|step| abreast.states[step].speed()).collect();
+    assert!(speeds.iter().all(|speed| (speed - speeds[0]).abs() < 0.1) && speeds[0] > 4.0, "{speeds:?}");
+}
+
+const PARKING: &str = "The AV was traveling north in the right lane on Elm Street and slowed to a stop for a pickup truck that was parallel parking in front of the AV.";
+
+#[test]
+fn who_is_parking_ahead_stands_half_out_of_the_lane() {
+    let shown = made(&told(PARKING));
+    let (lead, ego) = (track(&shown, "lead").states[0], shown.rollout.ego_track().states[before_contact(&shown)]);
+    assert!((1.0..2.5).contains(&(ego.y - lead.y)) && lead.heading > 0.2, "{lead:?}");
+    // Who stands there does not.
+    let stands = made(&told(&PARKING.replace("parallel parking", "stopped")));
+    let (lead, ego) = (track(&stands, "lead").states[0], stands.rollout.ego_track().states[before_contact(&stands)]);
+    assert!((ego.y - lead.y).abs() < 0.5 && lead.heading.abs() < 0.1, "{lead:?}");
 }

@@ -80,13 +80,15 @@ fn who_drives_beside_the_ego_on_the_right_has_a_lane_there() {
 
 #[test]
 fn who_encroaches_from_beside_comes_towards_the_ego() {
-    let made = made(&story(
-        "The AV was traveling north in the right lane on Elm Street. An SUV in the left adjacent lane drifted into the AV's lane and the AV slowed. A sedan approached \
-         from behind and the front of the sedan made contact with the rear of the AV.",
-    ));
-    let (suv, last) = (track(&made, "near"), before_contact(&made));
-    assert!(suv.states[0].y > made.rollout.ego_track().states[0].y, "on the left");
-    assert!(suv.states[last].y < suv.states[0].y - 0.6, "{:?}", suv.states[last]);
+    let slows = "The AV was traveling north in the right lane on Elm Street. An SUV in the left adjacent lane drifted into the AV's lane and the AV slowed. A sedan approached \
+                 from behind and the front of the sedan made contact with the rear of the AV.";
+    // Where the ego slows for it, it comes into the lane.
+    for (text, id) in [(slows.to_owned(), "merger"), (slows.replace(" and the AV slowed", ""), "near")] {
+        let made = made(&story(&text));
+        let (suv, last) = (track(&made, id), before_contact(&made));
+        assert!(suv.states[0].y > made.rollout.ego_track().states[0].y, "on the left");
+        assert!(suv.states[last].y < suv.states[0].y - 0.6, "{:?}", suv.states[last]);
+    }
 }
 
 #[test]

@@ -123,3 +123,38 @@ fn who_rides_on_small_wheels_does_what_it_is_told_to_but_no_turn_is_asked_of_it(
     let acts = verdict.checks.iter().find(|check| check.kind == CheckKind::CpActs).expect("told");
     assert!(acts.result == CheckResult::Shown && !acts.expected.contains("turned"), "{acts:?}");
 }
+
+const STOPS_AGAIN: &str = "The AV was stopped in a queue of traffic on Elm Street. A sedan that was stopped in front of the AV moved forward a little before stopping, and the AV \
+                           moved forward a little and came to a stop. A van that was stopped behind the AV proceeded forward and the front of the van made contact with the \
+                           rear of the stationary AV.";
+const LINE_AHEAD: &str = "The AV was traveling north in the center lane of three lanes on Elm Street. As the AV approached a line of stopped cars ahead, it began to change lanes to \
+                          the left, and a pickup truck in the left lane accelerated and the right side of the pickup truck made contact with the left side of the AV.";
+const DOUBLE: &str = "The AV was traveling east in the left lane on Elm Street. A delivery van was double-parked. A sedan in the right lane changed lanes to the left and the front \
+                      left of the sedan made contact with the rear right of the AV.";
+
+#[test]
+fn who_moved_up_ahead_and_stopped_again_has_not_driven_off() {
+    let shown = made(&told(STOPS_AGAIN));
+    let (lead, ego, last) = (track(&shown, "lead"), shown.rollout.ego_track(), before_contact(&shown));
+    assert!(lead.states[last].x - lead.states[0].x > 1.0, "it moves up");
+    assert!(lead.states[last].speed() < 0.1 && lead.states[last].x - ego.states[last].x < 14.0, "and stands");
+    // Who is not told to have stopped drives on.
+    let drives = made(&told(&STOPS_AGAIN.replace(" a little before stopping", "")));
+    let lead = track(&drives, "lead");
+    assert!(lead.states[before_contact(&drives)].speed() > 2.0, "{:?}", lead.states[last]);
+}
+
+#[test]
+fn whom_the_ego_changes_lanes_for_stands_in_the_lane_that_it_leaves() {
+    let shown = made(&told(LINE_AHEAD));
+    let (near, ego, last) = (track(&shown, "near"), shown.rollout.ego_track(), before_contact(&shown));
+    assert!((near.states[0].y - ego.states[0].y).abs() < 0.5, "{:?}", near.states[0]);
+    assert!(near.states[0].x > ego.states[last].x + 4.0, "{:?}", near.states[0]);
+}
+
+#[test]
+fn who_stands_in_a_lane_that_nobody_tells_does_so_on_the_egos_side_of_the_road() {
+    let shown = made(&told(DOUBLE));
+    let (near, ego) = (track(&shown, "near").states[0], shown.rollout.ego_track().states[before_contact(&shown)]);
+    assert!(near.y < ego.y + 1.7 && near.x > ego.x && near.heading.abs() < 0.1, "{near:?}");
+}
