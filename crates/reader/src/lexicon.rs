@@ -8,7 +8,7 @@ use std::sync::OnceLock;
 
 const TEXT: &str = include_str!("../data/lexicon.toml");
 
-/// Most words that a `*` of a phrase stands for.
+/// Most words that a `*` of a phrase stands for; the "'s" of whose lane it is is none: "into the other van's lane".
 const GAP: usize = 3;
 
 /// Words that a `*` never stands for.
@@ -626,8 +626,13 @@ pub fn find(phrase: &[String], tokens: &[Token]) -> Option<(usize, usize)> {
 fn fits(rest: &[String], tokens: &[Token], at: usize) -> Option<usize> {
     let Some((word, others)) = rest.split_first() else { return Some(0) };
     if word == "*" {
-        return (0..=GAP).find_map(|gap| {
+        return (0..=GAP + 1).find_map(|gap| {
             let skipped = tokens.get(at..at + gap)?;
+            let lane = matches!(others.first().map(String::as_str), Some("lane" | "path"));
+            let owned = lane && skipped.iter().any(|token| token.text == "'s");
+            if gap - usize::from(owned) > GAP {
+                return None;
+            }
             let inside =
                 skipped.iter().all(|token| token.kind != TokenKind::Mark && !NO_GAP.contains(&token.text.as_str()));
             inside.then(|| fits(others, tokens, at + gap).map(|length| length + gap)).flatten()

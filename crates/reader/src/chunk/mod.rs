@@ -47,6 +47,8 @@ pub struct Noun {
     pub tractor: bool,
     /// It is called the second, or so.
     pub ordinal: Option<u8>,
+    /// It is called a passenger vehicle, and is no bus.
+    pub passenger: bool,
     /// It is another one with a name of the subject vehicle: "a different AV".
     pub namesake: bool,
     /// More than one.
@@ -71,6 +73,7 @@ impl Noun {
             one_of: false,
             tractor: false,
             ordinal: None,
+            passenger: false,
             namesake: false,
             several: false,
             occupant: None,

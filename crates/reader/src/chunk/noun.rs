@@ -288,6 +288,11 @@ impl Chunker<'_> {
                     _ => None,
                 });
                 draft.noun.adjectives.push(adjective);
+                // "the other party's van".
+                let behind = at + found.length;
+                if self.text(behind - 1) == "party" && self.text(behind) == "'s" && self.vehicle(behind + 1) {
+                    draft.at += 1;
+                }
             }
             Meaning::Make if capital || draft.make => {
                 draft.make = true;
@@ -317,6 +322,10 @@ impl Chunker<'_> {
         self.lexicon.longest(self.tokens, at, |meaning| matches!(meaning, Meaning::Adjective(_))).is_some()
     }
 
+    fn company(&self, at: usize) -> bool {
+        self.lexicon.longest(self.tokens, at, |meaning| matches!(meaning, Meaning::Company)).is_some()
+    }
+
     /// "an unoccupied and parked van". "stopped at the light and another van came": two nouns.
     fn joins_adjectives(&self, at: usize, noun: &Noun) -> bool {
         self.text(at) == "and"
@@ -342,16 +351,6 @@ impl Chunker<'_> {
         // "a truck carrying cars" is no cars.
         let load = carrier == "trailer" || carrier.ends_with('s') && carrier != "bus";
         (carries && !load && self.vehicle(behind + 1)).then_some(behind + 1)
-    }
-
-    /// "near a pedestrian crossing". "It hit a pedestrian crossing" tells of somebody.
-    pub(super) fn is_behind_a_place_word(&self, at: usize) -> bool {
-        let back = |by: usize| at.checked_sub(by).map_or("", |at| self.text(at));
-        let before = if DETERMINERS.contains(&back(1)) { back(2) } else { back(1) };
-        matches!(
-            before,
-            "at" | "near" | "through" | "of" | "past" | "before" | "approaching" | "approached" | "toward" | "towards"
-        )
     }
 
     /// "a truck-mounted sign" names no truck. "A truck mounted the curb" does.
@@ -467,7 +466,9 @@ impl Chunker<'_> {
     fn only_named(&self, draft: Draft) -> Option<(Noun, usize)> {
         let Draft { mut noun, first, at, subject, make, .. } = draft;
         let at = at.min(self.tokens.len());
-        if at <= first || noun.article == Article::None || !(subject || make) {
+        // "the third party", "the other party": who drives it.
+        let party = at > first && self.text(at - 1) == "party" && noun.adjectives.contains(&Adjective::Other);
+        if at <= first || noun.article == Article::None || !(subject || make || party) {
             return None;
         }
         if !subject && (first..at).any(|at| self.names_a_place(at)) {
@@ -511,6 +512,10 @@ impl Chunker<'_> {
         let found = self.lexicon.longest(self.tokens, at, |meaning| {
             matches!(meaning, Meaning::Subject | Meaning::Kind(_) | Meaning::Occupant(_))
         })?;
+        // "the Pony AV": a company that is called as an animal is, written large.
+        if found.meaning == Meaning::Kind(Kind::Animal) && self.tokens[at].capital && self.company(at) {
+            return None;
+        }
         let part = self.part(at).map_or(0, |(_, length)| length);
         // "passenger side", "driver door" are parts.
         if matches!(found.meaning, Meaning::Occupant(_))
@@ -558,6 +563,10 @@ impl Chunker<'_> {
         let owned =
             at > self.first && matches!(self.text(at - 1), "its" | "'s") && matches!(self.text(at), "boom" | "arm");
         if owned && kind == Some(Kind::Gate) {
+            return None;
+        }
+        // "half a car length", "two vehicle lengths": how far.
+        if matches!(next, "length" | "lengths") && kind.is_some_and(Kind::is_vehicle) {
             return None;
         }
         // "the bus only lane", "its vehicle speed".
@@ -688,6 +697,7 @@ impl Chunker<'_> {
                     noun.names.push(word.to_owned());
                 }
                 noun.tractor = length == 1 && word == "tractor";
+                noun.passenger = kind == Kind::Vehicle && word == "passenger";
                 // "a passenger sedan" carries passengers, and is none.
                 if kind.is_vehicle() && matches!(noun.occupant, Some((Occupant::Rider, _))) {
                     (noun.occupant, noun.owner) = (None, None);

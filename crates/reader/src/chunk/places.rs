@@ -1,6 +1,6 @@
 //! Directions, lanes and places beside the road.
 
-use super::{Chunker, Spot};
+use super::{Chunker, DETERMINERS, Spot};
 use crate::token::{Token, TokenKind, number};
 use recrash_model::account::{Compass, LaneWord};
 
@@ -467,6 +467,23 @@ impl Chunker<'_> {
         between.then_some((LaneWord::Center, lane + 1 - at))
     }
 
+    /// "near a pedestrian crossing". "It hit a pedestrian crossing" tells of somebody.
+    pub(super) fn is_behind_a_place_word(&self, at: usize) -> bool {
+        let back = |by: usize| at.checked_sub(by).map_or("", |at| self.text(at));
+        let before = if DETERMINERS.contains(&back(1)) { back(2) } else { back(1) };
+        matches!(
+            before,
+            "at" | "near" | "through" | "of" | "past" | "before" | "approaching" | "approached" | "toward" | "towards"
+        )
+    }
+
+    /// "from a", "out of the nearby": a place that somebody leaves stands behind.
+    fn is_come_out_of(&self, at: usize) -> bool {
+        let from = (at.saturating_sub(3)..at)
+            .rfind(|&at| self.text(at) == "from" || self.text(at) == "of" && at > 0 && self.text(at - 1) == "out");
+        from.is_some_and(|from| from + 1 < at && super::is_determiner(self.text(from + 1)))
+    }
+
     /// A place beside the road, and its tokens: "a parking stall", "an alley".
     pub(super) fn spot(&self, at: usize) -> Option<(Spot, usize)> {
         let (one, two) = (self.text(at), self.text(at + 1));
@@ -482,6 +499,16 @@ impl Chunker<'_> {
             }
             ("parking", "lot" | "garage" | "area" | "structure") => (Spot::Driveway, 2),
             ("stall" | "carport", _) => (Spot::Stall, 1),
+            // "out of a construction area", "from a work site": beside the road, where nobody drives through it.
+            (
+                "construction" | "work" | "job" | "building" | "loading" | "staging",
+                "area" | "site" | "yard" | "zone",
+            ) if self.is_come_out_of(at) => (Spot::Driveway, 2),
+            ("jobsite" | "yard" | "depot" | "plaza" | "property" | "farm" | "field" | "barn", _)
+                if self.is_come_out_of(at) =>
+            {
+                (Spot::Driveway, 1)
+            }
             // "out of a space", "from its spot".
             ("space" | "spot" | "bay", _)
                 if at >= 2

@@ -2,7 +2,7 @@
 //!
 //! A new rule of English that says "here it is no verb" goes into [`NO_VERB`].
 
-use super::{Chunk, Chunker, DETERMINERS, Placed};
+use super::{Chunk, Chunker, DETERMINERS, Joint, Placed};
 use crate::lexicon::{Form, Found, Meaning, Part, Relation, Sense};
 use crate::token::TokenKind;
 use recrash_model::account::{Act, KindGroup, LeftRight};
@@ -371,7 +371,7 @@ impl Chunker<'_> {
         if named && matches!(token.text.as_str(), "stationary" | "motionless" | "idle" | "static") {
             return Some((Sense::Act(Act::Hold), Form::Past, 1));
         }
-        if token.capital && at > self.first {
+        if token.capital && at > self.first || self.leads_on(at, before) {
             return None;
         }
         let found = self.verb_phrase(at)?;
@@ -412,6 +412,21 @@ impl Chunker<'_> {
                 .relation(at + found.length - 1)
                 .is_some_and(|(relation, length)| length > 1 && matches!(relation, Relation::Left | Relation::Right));
         Some((sense, form, if from || to { found.length - 1 } else { found.length }))
+    }
+
+    /// "was stopped on Elm Street headed north": heading so, where the clause has its verb, or "while in the left lane" has none of its own. "It
+    /// stopped, then headed north" tells what it did next.
+    fn leads_on(&self, at: usize, before: &[Placed]) -> bool {
+        let ends = |placed: &&Placed| matches!(placed.chunk, Chunk::Comma | Chunk::Joint(_));
+        let verb = |placed: &&Placed| matches!(placed.chunk, Chunk::Verb(..) | Chunk::Be);
+        let begins = before.iter().rposition(|placed| ends(&placed)).map_or(0, |joint| joint + 1);
+        let (outer, clause) = before.split_at(begins);
+        let named =
+            clause.iter().any(|placed| matches!(placed.chunk, Chunk::Noun(_) | Chunk::Pronoun | Chunk::Relative));
+        let meanwhile = outer.last().is_some_and(|joint| matches!(joint.chunk, Chunk::Joint(Joint::While))) && !named;
+        let relative = clause.iter().any(|placed| matches!(placed.chunk, Chunk::Relative));
+        let told = clause.iter().any(|placed| verb(&placed)) || meanwhile && outer.iter().any(|placed| verb(&placed));
+        matches!(self.text(at), "headed" | "bound") && told && !relative
     }
 
     /// The longest verb of the lexicon here that the words behind it allow: "rolled into the roadway" touches nobody.

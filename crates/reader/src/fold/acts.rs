@@ -12,6 +12,7 @@ use crate::lexicon::{Form, Lexicon, Progress, Relation, Sense};
 use crate::token::Token;
 use crate::world::{Actor, SUBJECT};
 use recrash_model::account::{Account, Act, ActFact, Kind, KindGroup, LeftRight, Manner, RoadFeature};
+use recrash_model::template::Movement;
 
 /// What somebody did, in order; the same act told twice in a row once.
 pub(super) fn acts(reading: &Reading<'_>, actor: Actor) -> Vec<ActFact> {
@@ -371,6 +372,9 @@ fn act_of(reading: &Reading<'_>, number: usize, frame: &Frame, pushed: bool) -> 
     if act == Act::Follow && (in_headline(reading, frame) || is_of_last_contact(reading, frame.sentence)) {
         return None;
     }
+    if act == Act::Follow && names_mode(reading, number, frame) {
+        return None;
+    }
     // "proceeded forward out of a stall".
     let comes_out = matches!(frame.out_of, Some(Spot::Stall | Spot::Driveway | Spot::Curb));
     let words = reading.text[reading.story.tokens[frame.first].start..].to_lowercase();
@@ -383,6 +387,10 @@ fn act_of(reading: &Reading<'_>, number: usize, frame: &Frame, pushed: bool) -> 
         return None;
     }
     Some(match act {
+        // "began to back up, moving into the AV's lane": on its way back.
+        Act::LaneChange if frame.form == Form::Ing && moved_in_sentence(reading, number) == Some(Act::Reverse) => {
+            Act::Drift
+        }
         // "A dog came out from between two cars": no vehicle that leaves a place of its own.
         Act::PullOut if frame.who.is_some_and(|who| is_animal(reading, who)) => Act::Enter,
         Act::Enter if enters_a_lane(reading, number, frame) => Act::LaneChange,
@@ -542,7 +550,14 @@ fn yields_in_motion(reading: &Reading<'_>, number: usize, frame: &Frame) -> bool
             })
         });
     // "reversed without yielding".
-    let drives = last.is_some() && !slows(last) && last != Some(Act::Reverse);
+    // "The AV was yielding to traffic when a van struck it": nothing else is told of it, and by the column it moved.
+    let moves = !matches!(reading.record.sv_movement.known(), None | Some(Movement::Stopped | Movement::Parked));
+    let was = frame.form == Form::Ing
+        && frame.who == Some(SUBJECT)
+        && moves
+        && frame.first > 0
+        && reading.story.tokens[frame.first - 1].text == "was";
+    let drives = (last.is_some() || was) && !slows(last) && last != Some(Act::Reverse);
     to.is_some() && !told && drives && !slow && !reading.is_after(number)
 }
 
@@ -580,6 +595,27 @@ fn last_act(reading: &Reading<'_>, number: usize, frame: &Frame, wanted: impl Fn
 pub(super) fn in_headline(reading: &Reading<'_>, frame: &Frame) -> bool {
     reading.story.frames.iter().any(|other| other.sentence == frame.sentence && other.sense == Sense::Headline)
 }
+
+/// "After stopping at a sign, the AV, operating in autonomous mode, was about to turn": who drove it, and not that it did, where the sentence
+/// tells of something else that it did.
+pub(super) fn names_mode(reading: &Reading<'_>, number: usize, frame: &Frame) -> bool {
+    let tokens = &reading.story.tokens;
+    let word = |at: usize| tokens.get(at).map_or("", |token| token.text.as_str());
+    let drives = matches!(word(frame.first), "operating" | "operated" | "driven" | "driving");
+    let clause = (frame.first..frame.first + MODE_WITHIN).map(word).take_while(|word| !matches!(*word, "," | "."));
+    let mode = clause.into_iter().any(|word| word == "mode");
+    let apposed = frame.first > 0 && word(frame.first - 1) == "," && drives && mode;
+    let stands = |(other, before): (usize, &Frame)| {
+        other < number
+            && before.sentence == frame.sentence
+            && before.happened()
+            && matches!(before.act(), Some(Act::Stop | Act::Hold))
+    };
+    apposed && frame.who.is_some_and(|who| reading.before(who).any(stands))
+}
+
+/// "operating in fully autonomous mode": the mode is named within so many words. [tokens]
+const MODE_WITHIN: usize = 7;
 
 /// Who goes on from a standstill sets off.
 fn goes_on_from_a_stand(reading: &Reading<'_>, number: usize, frame: &Frame, words: &str) -> bool {

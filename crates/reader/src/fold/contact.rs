@@ -177,9 +177,11 @@ fn as_column(
     if let Some(&touch) = touching.iter().find(|(_, actor)| is(*actor)) {
         return touch;
     }
-    // "An electric scooter struck it", by the words: no car that was only there.
+    // "An electric scooter struck it", by the words: no car that was only there. Nor is a cyclist who was there "a passenger vehicle".
     let light = matches!(said, Some(KindGroup::OnFoot | KindGroup::Cyclist | KindGroup::Motorcycle));
-    if light && column == KindGroup::Car && hit.who == Some(partner) && hit.object == Some(SUBJECT) {
+    let known = &story.world.actors[partner];
+    let car = said == Some(KindGroup::Car) && (known.passenger || known.kind != Some(Kind::Vehicle));
+    if (light && column == KindGroup::Car || car) && hit.who == Some(partner) && hit.object == Some(SUBJECT) {
         return unchanged;
     }
     let acting = |actor: &Actor| is(*actor) && !story.world.actors[*actor].several;

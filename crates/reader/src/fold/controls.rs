@@ -66,7 +66,10 @@ pub(super) fn controls(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<Control>
             };
             let obeyed = if broken {
                 Some(Obeyed::No)
-            } else if ran.is_some_and(|act| matches!(act, Act::Stop | Act::Hold)) && state != Some(SignalState::Green) {
+            // "was slowing for a red light".
+            } else if ran.is_some_and(|act| matches!(act, Act::Stop | Act::Hold)) && state != Some(SignalState::Green)
+                || ran == Some(Act::Slow) && state == Some(SignalState::Red)
+            {
                 Some(Obeyed::Yes)
             } else {
                 None
@@ -87,6 +90,7 @@ pub(super) fn controls(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<Control>
     }
     if actor == SUBJECT {
         had_a_light(reading, &mut all);
+        was_at_a_sign(reading, &mut all);
         of_that_queue(reading, &mut all, turned_green.map(|(state, ..)| state));
         if turned_green.is_none() {
             told_alone(reading, &mut all);
@@ -146,6 +150,33 @@ fn had_a_light(reading: &Reading<'_>, all: &mut Vec<Fact<Control>>) {
         let own = next.is_some_and(|next| next.who == Some(SUBJECT)) && (fronted || had);
         if own && all.iter().all(|known| known.value.device != device) {
             all.push(reading.told(Control { device, state, obeyed: None }, at + 2, at + 2 + length));
+        }
+    }
+}
+
+/// "The stationary AV was in autonomous mode at the stop sign": told with no verb but "was", behind what is told of it.
+fn was_at_a_sign(reading: &Reading<'_>, all: &mut Vec<Fact<Control>>) {
+    let story = &reading.story;
+    let word = |at: usize| story.tokens.get(at).map_or("", |token| token.text.as_str());
+    for at in 1..reading.until().min(story.tokens.len()) {
+        let words: Vec<&str> = (at..at + 4).map(word).collect();
+        let Some((device, state, length)) = named(&words) else { continue };
+        let article = usize::from(matches!(word(at - 1), "a" | "the" | "its"));
+        let there = at > article && word(at - 1 - article) == "at";
+        let Some(sentence) = story.sentences.iter().find(|sentence| (sentence.first..sentence.end).contains(&at))
+        else {
+            continue;
+        };
+        let before =
+            || story.frames.iter().enumerate().filter(|(_, frame)| frame.first < at && frame.first >= sentence.first);
+        let covered =
+            before().any(|(number, frame)| frame.who.is_some() && reading.window(number).1 > at && !frame.aside);
+        let last = before().last().map(|(_, frame)| frame);
+        let stood = |frame: &Frame| matches!(frame.act(), Some(Act::Hold | Act::Stop)) && frame.happened();
+        let own = last.filter(|frame| frame.who == Some(SUBJECT) && stood(frame));
+        let was = own.is_some_and(|frame| (frame.end..at).any(|at| word(at) == "was"));
+        if there && was && !covered && all.iter().all(|known| known.value.device != device) {
+            all.push(reading.told(Control { device, state, obeyed: Some(Obeyed::Yes) }, at, at + length));
         }
     }
 }

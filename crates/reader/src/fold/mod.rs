@@ -32,7 +32,7 @@ mod whereabouts;
 use crate::chunk::Piece;
 use crate::frame::{Frame, Story, story};
 use crate::lexicon::{Form, Sense};
-use crate::world::{Actor, Own, SUBJECT};
+use crate::world::{Actor, Own, SUBJECT, is_no_passenger_vehicle};
 use contact::Contacts;
 use recrash_model::account::{
     ACCOUNT_FORMAT, Account, Act, Contradiction, Fact, Kind, KindGroup, LaneWord, Origin, Other, Source, Striker, told,
@@ -495,7 +495,12 @@ fn hurts_its_own_rider(reading: &Reading<'_>) -> bool {
 /// Everybody else who is in the story up to the contact.
 fn others(reading: &Reading<'_>) -> Vec<Other> {
     let story = &reading.story;
-    let is_partner = |actor| [reading.contacts.partner, reading.contacts.retold].contains(&Some(actor));
+    // "It was rear-ended. A bus came over. A passenger vehicle struck its rear": the bus was not who is told of first.
+    let retold = reading.contacts.retold.filter(|&retold| {
+        let passenger = reading.contacts.partner.is_some_and(|partner| story.world.actors[partner].passenger);
+        !(passenger && story.world.actors[retold].kind.is_some_and(is_no_passenger_vehicle))
+    });
+    let is_partner = |actor| [reading.contacts.partner, retold].contains(&Some(actor));
     let mut all = Vec::new();
     for (actor, known) in story.world.actors.iter().enumerate().skip(1) {
         let (Some(kind), false) = (known.kind, is_partner(actor) || known.announced || known.towed_by.is_some()) else {
@@ -516,7 +521,8 @@ fn others(reading: &Reading<'_>) -> Vec<Other> {
         let nobody = nobody::is_nobody(reading, (first, end), &acts, again)
             || acts.is_empty() && nobody::is_named_before(reading, actor, kind)
             || nobody::is_one_of_the_two(reading, (actor, kind), (first, end), &acts)
-            || nobody::is_remark(reading, (first, end), &acts);
+            || nobody::is_remark(reading, (first, end), &acts)
+            || known.mentions == 1 && nobody::is_denied(reading, first);
         if !touched_partner && nobody {
             continue;
         }

@@ -1,6 +1,7 @@
 //! Movement of both sides just before the conflict, from their acts, states and columns.
 
 use super::Reading;
+use super::party::movement_column;
 use crate::chunk::Joint;
 use crate::frame::Frame;
 use crate::lexicon::Sense;
@@ -85,7 +86,7 @@ fn of_partner(reading: &Reading<'_>, account: &Account, partner: &Party) -> Opti
     if group == Some(KindGroup::Object) {
         return None;
     }
-    let column = reading.record.cp_movement.known();
+    let column = movement_column(reading);
     let movement = movement(reading, partner, column, "CP Pre-Crash Movement")
         .or_else(|| of_nothing_told(reading, account, partner, group));
     let passes = column == Some(Movement::Passing) || partner.did(Act::Pass);
@@ -129,7 +130,7 @@ fn of_nothing_told(
 
 /// A movement of the partner held against the way from which it came.
 fn by_way(reading: &Reading<'_>, account: &Account, partner: &Party, mut fact: Fact<Movement>) -> Fact<Movement> {
-    let column = reading.record.cp_movement.known();
+    let column = movement_column(reading);
     let origin = told(&account.came_from);
     let same_way = matches!(origin, Some(Origin::Behind | Origin::Beside { .. }));
     let oncoming = origin == Some(Origin::Opposite);

@@ -199,6 +199,15 @@ pub(super) fn is_remark(reading: &Reading<'_>, (first, end): (usize, usize), act
         || restricted
 }
 
+/// "With no other vehicles at the junction", "the lane was clear of traffic": nobody was there. Of "no vehicle but a van" the van was.
+pub(super) fn is_denied(reading: &Reading<'_>, first: usize) -> bool {
+    let word = |back: usize| first.checked_sub(back).map_or("", |at| reading.story.tokens[at].text.as_str());
+    let inner = usize::from(matches!(word(1), "any" | "other" | "approaching" | "oncoming"));
+    let inner = inner + usize::from(inner > 0 && word(1 + inner) == "any");
+    let free = word(1 + inner) == "of" && matches!(word(2 + inner), "free" | "clear" | "devoid");
+    matches!(word(1 + inner), "no" | "without" | "nor") || free
+}
+
 /// Whether somebody of whom no act is told is the partner, as the first sentence of the story named it: that tells the crash, and the
 /// story tells it again; or a trailer, which somebody else pulls.
 pub(super) fn is_named_before(reading: &Reading<'_>, actor: Actor, kind: Kind) -> bool {

@@ -52,6 +52,9 @@ fn told_with(reading: &Reading<'_>, actor: Actor, at: usize) -> Option<usize> {
     let here = |(_, frame): &(usize, &Frame)| frame.sentence == sentence && !frame.aside;
     let frames = || story.frames.iter().enumerate().filter(here);
     let before = frames().rfind(|(_, frame)| frame.first < at);
+    if before.is_none() && actor == SUBJECT && was_in_mode(reading, story.sentences[sentence].first, at) {
+        return frames().find(|(_, frame)| frame.first > at).map(|(number, _)| number);
+    }
     let (number, frame) = before.or_else(|| frames().find(|(_, frame)| frame.first > at))?;
     // "It was hit by a van during its turn": its own.
     let subject = if frame.passive { frame.object.or(frame.who) } else { frame.who };
@@ -61,6 +64,16 @@ fn told_with(reading: &Reading<'_>, actor: Actor, at: usize) -> Option<usize> {
     // "a truck in the slip lane", "struck by a sedan in the slip lane": that one is there.
     let another = at.checked_sub(1).is_some_and(|last| is_of_others(reading, last));
     (of && told && !another && !frame.is_contact()).then_some(number)
+}
+
+/// "The AV was in autonomous mode in the slip lane when a van struck it": the words before the place are of the subject vehicle, and tell nothing
+/// that it did.
+fn was_in_mode(reading: &Reading<'_>, first: usize, at: usize) -> bool {
+    let tokens = &reading.story.tokens;
+    let own = |meaning| matches!(meaning, Meaning::Subject | Meaning::Company);
+    let named = (first..at.min(first + 4)).any(|at| Lexicon::get().longest(tokens, at, own).is_some());
+    let was = tokens[first..at].iter().any(|token| token.text == "was");
+    named && was && tokens[at - 1].text == "mode"
 }
 
 /// Whether a token is the noun for somebody else.

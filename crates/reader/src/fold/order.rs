@@ -64,16 +64,16 @@ fn by_type(account: &Account, partner: &Party, state: ContactState, crash_type: 
         CrashType::HeadOn => Some((FirstMover::Both, "they meet")),
         CrashType::Secondary if rear => ahead(FirstMover::Sv),
         CrashType::Secondary if from_ahead => ahead(FirstMover::Cp),
-        CrashType::Backing => Some((backing(account, partner, state), "who goes backwards comes to the other")),
+        CrashType::Backing => Some((backing(account, partner, state)?, "who goes backwards comes to the other")),
         _ => None,
     }
 }
 
 /// Who goes backwards comes to the other.
-fn backing(account: &Account, partner: &Party, state: ContactState) -> FirstMover {
+fn backing(account: &Account, partner: &Party, state: ContactState) -> Option<FirstMover> {
     let rear = |party: &Party| has_zone(party, |zone| zone.is_rear());
     let fore = |party: &Party| has_zone(party, |zone| zone.is_front());
-    match (state, cp_state(account)) {
+    Some(match (state, cp_state(account)) {
         // Both go backwards: whose rear comes to the other's front.
         (ContactState::Reversing, Some(ContactState::Reversing)) if fore(&account.sv) && rear(partner) => {
             FirstMover::Sv
@@ -94,10 +94,20 @@ fn backing(account: &Account, partner: &Party, state: ContactState) -> FirstMove
         {
             FirstMover::Cp
         }
+        // With a corner of its front it may have come to one that goes backwards, of which no part is told.
+        (ContactState::Moving | ContactState::SettingOff, Some(ContactState::Reversing))
+            if partner.zones.is_empty() && only_front(&account.sv) && on_corner(&account.sv) =>
+        {
+            return None;
+        }
         (ContactState::Reversing, _) if struck_who_backed_away(account) => FirstMover::Sv,
         (ContactState::Reversing, _) => FirstMover::Cp,
         _ => FirstMover::Sv,
-    }
+    })
+}
+
+fn only_front(party: &Party) -> bool {
+    party.zones.iter().all(|zone| zone.value.is_front())
 }
 
 /// Whose front touches comes later than whose flank is touched.

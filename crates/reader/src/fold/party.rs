@@ -10,7 +10,7 @@ use super::state::{partner_state, sv_speed, sv_state};
 use super::touched::{by_trailer, zones};
 use crate::frame::Frame;
 use crate::lexicon::{Relation, Sense};
-use crate::world::{Actor, SUBJECT};
+use crate::world::{Actor, SUBJECT, is_no_passenger_vehicle};
 use recrash_model::account::{
     Account, Act, Compass, ContactState, Fact, Kind, KindGroup, LaneWord, LeftRight, Origin, Party, Speed,
     SpeedMeaning, told,
@@ -50,6 +50,7 @@ pub(crate) fn party(reading: &Reading<'_>, actor: Actor) -> Party {
             .filter(|(_, first, _)| before(*first))
             .or_else(|| turn_lane_to_come(reading, actor))
             .or_else(|| in_the_same_lane(reading, actor))
+            .or_else(|| in_the_lane_of_the_other_way(reading, actor))
             .map(|(lane, first, end)| reading.told(lane, first, end)),
         speeds: speeds(reading, actor),
         zones: zones(reading, actor),
@@ -74,6 +75,20 @@ fn in_the_same_lane(reading: &Reading<'_>, actor: Actor) -> Option<(LaneWord, us
     let (first, words) = (sentence.first, &reading.story.tokens[sentence.first..sentence.end]);
     let at = words.windows(2).position(|pair| pair[0].text == "same" && pair[1].text == "lane")?;
     (!changes).then_some((own, first + at, first + at + 2))
+}
+
+/// "A van going south entered the northbound lane to pass": the lane of those who come the other way.
+fn in_the_lane_of_the_other_way(reading: &Reading<'_>, actor: Actor) -> Option<(LaneWord, usize, usize)> {
+    let (own, ..) = reading.story.world.actors[actor].heading.filter(|_| actor != SUBJECT)?;
+    let word = |at: usize| reading.story.tokens.get(at).map_or("", |token| token.text.as_str());
+    let over = |frame: &Frame| {
+        let (compass, first, end) = frame.heading?;
+        let goes = matches!(frame.act(), Some(Act::Enter | Act::LaneChange | Act::Drift | Act::Swerve | Act::Pass));
+        let lane = end + usize::from(matches!(word(end), "travel" | "traffic" | "through"));
+        let other = compass == own.turned(4) && matches!(word(lane), "lane" | "lanes");
+        (goes && other && frame.happened()).then_some((LaneWord::Opposing, first, lane + 1))
+    };
+    reading.before(actor).find_map(|(_, frame)| over(frame))
 }
 
 /// "passed the AV on the left to enter the left turn lane": the lane in which it is to be.
@@ -156,7 +171,7 @@ pub(crate) fn columns(reading: &Reading<'_>, account: &mut Account, alone: bool)
         partner.zones = ticked(reading, actor, &record.cp_zones, "CP Contact Area");
     }
     let column = match record.partner {
-        Coded::Known(kind) => Some(kind_of(kind)),
+        Coded::Known(kind) => Some(kind_of(kind)).filter(|kind| !names_another(reading, *kind)),
         _ => None,
     };
     let vague = partner.kind.as_ref().is_none_or(|kind| kind.value == Kind::Vehicle);
@@ -171,7 +186,7 @@ pub(crate) fn columns(reading: &Reading<'_>, account: &mut Account, alone: bool)
         partner.kind = Some(Fact::by_rule(Kind::Object, "something that has no name of a road user"));
     }
     if partner.state.is_none() {
-        let state = match record.cp_movement.known() {
+        let state = match movement_column(reading) {
             Some(Movement::Stopped) => Some(ContactState::Stopped),
             Some(Movement::Parked) => Some(ContactState::Parked),
             Some(Movement::Backing) => Some(ContactState::Reversing),
@@ -182,6 +197,27 @@ pub(crate) fn columns(reading: &Reading<'_>, account: &mut Account, alone: bool)
     } else {
         partner_state(reading, account);
     }
+}
+
+/// The movement that the column has for the partner, where it means that one.
+pub(super) fn movement_column(reading: &Reading<'_>) -> Option<Movement> {
+    let record = reading.record;
+    let another = record.partner.known().is_some_and(|kind| names_another(reading, kind_of(kind)));
+    record.cp_movement.known().filter(|_| !another)
+}
+
+/// "It yielded to a bus, and another vehicle struck it", "a cyclist merged, and a passenger vehicle struck it", of a column that names the
+/// bus or a cyclist: another one of the story.
+fn names_another(reading: &Reading<'_>, column: Kind) -> bool {
+    let Some(partner) = reading.contacts.partner.map(|partner| &reading.story.world.actors[partner]) else {
+        return false;
+    };
+    let plain = partner.kind == Some(Kind::Vehicle);
+    let narrow = !matches!(column, Kind::Vehicle | Kind::PassengerCar | Kind::Object);
+    let others = reading.story.world.actors.iter().skip(1);
+    let met = others.filter(|other| other.mentions > 0).any(|other| other.kind == Some(column));
+    let no_vehicle = !column.is_vehicle() && column.group() != KindGroup::Motorcycle;
+    plain && narrow && met && (partner.another || partner.passenger && (is_no_passenger_vehicle(column) || no_vehicle))
 }
 
 /// "The rear of one that backed from ahead made contact with the rear of it" cannot be: where the column has its front, that was meant.

@@ -25,12 +25,28 @@ pub(super) fn side_of(reading: &Reading<'_>, actor: Actor, number: usize, act: A
     let side = if sided(act) { told().or_else(entered).or_else(signalled) } else { None };
     let kerb = || if changes { away_from_the_kerb(reading, actor, frame) } else { None };
     let meant = || if changes { as_signaled(reading, actor, frame) } else { None };
-    let side = side.or_else(goes_on).or_else(passes).or_else(meant).or_else(kerb);
+    let cuts_in = || if changes { side_of_cut_in(reading, number) } else { None };
+    let side = side.or_else(goes_on).or_else(passes).or_else(meant).or_else(kerb).or_else(cuts_in);
     let turn_meant = || if act == Act::Turn { side_meant(reading, number) } else { None };
     side.or_else(turn_meant)
         .or_else(|| into_turn_lane(reading, actor, frame, act))
         .or_else(|| if act == Act::Turn { turn_lane() } else { None })
         .or_else(|| turned_by_column(reading, actor, act))
+}
+
+/// "cut into the AV's lane. The AV swerved left": it goes the way that the AV then goes to get out of its way.
+fn side_of_cut_in(reading: &Reading<'_>, number: usize) -> Option<LeftRight> {
+    let frame = &reading.story.frames[number];
+    if frame.who == Some(SUBJECT) || frame.object != Some(SUBJECT) {
+        return None;
+    }
+    let evades = |(other, later): &(usize, &Frame)| {
+        *other > number
+            && later.sentence <= frame.sentence + 1
+            && matches!(later.act(), Some(Act::Swerve | Act::Drift | Act::LaneChange))
+            && later.happened()
+    };
+    reading.before(SUBJECT).find(evades).and_then(|(_, later)| later.side)
 }
 
 /// "slowed to turn left. As it began this turn, ...": to the side of the turn that was meant or begun before.

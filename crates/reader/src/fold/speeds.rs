@@ -2,10 +2,10 @@
 
 use super::Reading;
 use crate::frame::Frame;
-use crate::lexicon::{Form, Sense};
+use crate::lexicon::{Adjective, Form, Meaning, Sense};
 use crate::token::{Token, TokenKind};
 use crate::world::{Actor, SUBJECT};
-use recrash_model::account::{Act, Fact, Speed, SpeedMeaning};
+use recrash_model::account::{Act, Fact, Kind, Speed, SpeedMeaning};
 use recrash_model::record::MPS_PER_MPH;
 
 /// "slowed to about 6 mph", "accelerated to 5 mph": the words before the number, where nothing is told of a later speed. "Up to 10 mph" is
@@ -102,6 +102,37 @@ fn slows_later(reading: &Reading<'_>, actor: Actor, number: usize) -> bool {
     })
 }
 
+/// "the speed of the van was 5 mph", "an impact from the van at 1 mph": whose speed it is by a noun, and whether that names the contact.
+fn owner_of_speed(reading: &Reading<'_>, first: usize, at: usize) -> Option<(Actor, bool)> {
+    let tokens = &reading.story.tokens;
+    let word = |at: usize| tokens[at].text.as_str();
+    let from = first.max(at.saturating_sub(OWNER_WITHIN));
+    let ends = |at: &usize| matches!(word(*at), "," | "and" | "while" | "when" | "as") || word(*at).ends_with("mph");
+    let noun = (from..at).rev().take_while(|at| !ends(at)).find(|at| {
+        let speed = word(*at) == "speed" && word(at + 1) == "of";
+        let impact = matches!(word(*at), "impact" | "contact" | "collision") && word(at + 1) == "from";
+        speed || impact
+    })?;
+    let article = usize::from(crate::chunk::is_determiner(word(noun + 2)));
+    let lexicon = crate::lexicon::Lexicon::get();
+    let named = lexicon.longest(tokens, noun + 2 + article, |meaning| {
+        matches!(meaning, Meaning::Subject | Meaning::Company | Meaning::Kind(_) | Meaning::Adjective(_))
+    })?;
+    // "the speed of the vehicle": of which one is not told.
+    let behind = noun + 2 + article + named.length;
+    let numbered = || tokens.get(behind).is_some_and(|token| token.kind == TokenKind::Number && token.text != "1");
+    let owner = match named.meaning {
+        Meaning::Subject | Meaning::Company => Some(SUBJECT),
+        Meaning::Kind(Kind::Vehicle) if !numbered() => None,
+        Meaning::Adjective(Adjective::Other | Adjective::Another) | Meaning::Kind(_) => reading.contacts.partner,
+        _ => None,
+    }?;
+    Some((owner, word(noun) != "speed"))
+}
+
+/// Whose speed it is stands so near before the number. [tokens]
+const OWNER_WITHIN: usize = 14;
+
 /// Speeds that the words tell of somebody.
 pub(super) fn speeds(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<Speed>> {
     let tokens = &reading.story.tokens;
@@ -127,11 +158,14 @@ pub(super) fn speeds(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<Speed>> {
             .find(|(_, frame)| frame.first < at && !frame.aside && frame.who.is_some());
         let Some((number, frame)) = last_frame else { continue };
         let sentence = reading.story.sentences[frame.sentence];
-        let impact = at_impact(tokens, (sentence.first, sentence.end), at)
+        let owner = owner_of_speed(reading, sentence.first, at);
+        let impact = owner.is_some_and(|(_, impact)| impact)
+            || at_impact(tokens, (sentence.first, sentence.end), at)
             || is_until_contact(reading, number, at)
             || is_of_last_contact(reading, frame.sentence);
         let in_time = impact || !reading.is_after(number);
-        if frame.who != Some(actor) || !(sentence.first..sentence.end).contains(&at) || !in_time {
+        let who = owner.map(|(owner, _)| owner).or(frame.who);
+        if who != Some(actor) || !(sentence.first..sentence.end).contains(&at) || !in_time {
             continue;
         }
         let near: Vec<&str> =

@@ -1,6 +1,6 @@
 //! State at the contact as the words tell it, how long somebody had stood, and why.
 
-use super::acts::{avoids, begins_to_go_on, drives_already, gains_speed, in_headline, sets_off_at_green};
+use super::acts::{avoids, begins_to_go_on, drives_already, gains_speed, in_headline, names_mode, sets_off_at_green};
 use super::controls::{in_its_queue, shown};
 use super::lanes::waits_to_change;
 use super::speeds::is_of_last_contact;
@@ -58,7 +58,8 @@ pub(super) fn state(reading: &Reading<'_>, actor: Actor) -> (Option<Fact<Contact
         let aside = frame.aside && Some(frame.sentence) != sentence && told.state.is_some();
         // "It was traveling at 0 mph", told behind the contact, is no act.
         let speed = || act == Act::Follow && is_of_last_contact(reading, frame.sentence);
-        if aside || act == Act::Follow && in_headline(reading, frame) || speed() {
+        let mode = || act == Act::Follow && names_mode(reading, number, frame);
+        if aside || act == Act::Follow && in_headline(reading, frame) || speed() || mode() {
             continue;
         }
         if act == Act::Slow && told.stands() && avoids(reading, frame) || waits_to_change(reading, number, frame) {
@@ -156,7 +157,7 @@ impl Told {
             // "was stopped at a light, heading west".
             Act::Follow | Act::Turn if self.stands() && same_clause => return None,
             // "reversed and maneuvered to the right": backwards.
-            Act::Drift | Act::Swerve | Act::Park
+            Act::Drift | Act::Swerve | Act::Park | Act::LaneChange
                 if self.state() == Some(ContactState::Reversing)
                     && self.since.is_some_and(|(sentence, _)| sentence == frame.sentence) =>
             {

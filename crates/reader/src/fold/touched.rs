@@ -141,6 +141,33 @@ pub(super) fn keep_damaged_side(reading: &Reading<'_>, zones: &mut Vec<Fact<Cont
     if both && left != right && zones.iter().all(ticked) {
         zones.retain(|fact| if left { !on_right(fact.value) } else { !on_left(fact.value) });
     }
+    // And where it ticks the corner of the other side alone, the words count.
+    let corner = |zone: Z| matches!(zone, Z::FrontLeft | Z::FrontRight | Z::RearLeft | Z::RearRight);
+    let wrong = |fact: &Fact<Z>| corner(fact.value) && if left { on_right(fact.value) } else { on_left(fact.value) };
+    if left != right && !zones.is_empty() && zones.iter().all(|fact| ticked(fact) && wrong(fact)) {
+        for fact in zones {
+            *fact = Fact { value: mirrored(fact.value), source: reading.of(damage) };
+        }
+    }
+}
+
+/// The zone on the other side.
+const fn mirrored(zone: ContactZone) -> ContactZone {
+    use ContactZone as Z;
+    match zone {
+        Z::Left => Z::Right,
+        Z::Right => Z::Left,
+        Z::FrontLeft => Z::FrontRight,
+        Z::FrontRight => Z::FrontLeft,
+        Z::RearLeft => Z::RearRight,
+        Z::RearRight => Z::RearLeft,
+        zone => zone,
+    }
+}
+
+/// "the van's left door", and not "its left door".
+fn names_owner(frame: &Frame) -> bool {
+    frame.on.as_ref().is_some_and(|piece| piece.owner.is_some() && !piece.its)
 }
 
 /// Where somebody was touched by what the sentence of the crash says of the damage, or the headline of a rear-end crash.
@@ -150,8 +177,8 @@ fn told_besides(reading: &Reading<'_>, actor: Actor, first: usize, alone: bool) 
     let crash = &frames[first];
     let damage = frames[first..].iter().find(|frame| {
         let whose = match frame.object.or(frame.who.filter(|who| *who == SUBJECT)) {
-            // "collided with it, damaging its bumper": of the one that was struck.
-            Some(owner) if frame.who == Some(owner) && owner != SUBJECT => SUBJECT,
+            // "collided with it, damaging its bumper": of the one that was struck. "The two collided, damaging the van's bumper" names it.
+            Some(owner) if frame.who == Some(owner) && owner != SUBJECT && !names_owner(frame) => SUBJECT,
             Some(owner) => owner,
             None => SUBJECT,
         };

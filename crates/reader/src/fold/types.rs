@@ -2,7 +2,7 @@
 //! (`docs/models/crash-types.md`).
 
 use super::Reading;
-use super::party::has_zone;
+use super::party::{has_zone, movement_column};
 use crate::lexicon::Sense;
 use recrash_model::account::{
     Account, Act, ContactState, CrashType, Fact, FirstContact, Kind, KindGroup, LaneWord, LeftRight, Origin, Party,
@@ -402,7 +402,7 @@ fn separate(reading: &Reading<'_>) -> bool {
 fn by_columns(reading: &Reading<'_>, account: &Account) -> Option<(CrashType, &'static str)> {
     let partner = account.partner.as_ref()?;
     let rule = "zones and movement columns";
-    let cp = told(&partner.movement).or_else(|| reading.record.cp_movement.known());
+    let cp = told(&partner.movement).or_else(|| movement_column(reading));
     let sv = told(&account.sv.movement).or_else(|| reading.record.sv_movement.known());
     let turn = |movement| matches!(movement, Some(Movement::LeftTurn | Movement::RightTurn | Movement::UTurn));
     if matches!(

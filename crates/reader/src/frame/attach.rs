@@ -536,6 +536,14 @@ impl Parser<'_> {
         before.any(|before| before.who == taken.who && before.act() == Some(Act::Turn))
     }
 
+    /// "out of a parking spot of the oncoming lane": where the spot is.
+    fn is_lane_of_a_place(&self, first: usize) -> bool {
+        let word = |back: usize| first.checked_sub(back).map_or("", |at| self.tokens[at].text.as_str());
+        let article = usize::from(crate::chunk::is_determiner(word(1)));
+        let place = matches!(word(2 + article), "space" | "spot" | "stall" | "spaces" | "driveway" | "garage" | "bay");
+        place && matches!(word(1 + article), "of" | "along" | "off" | "beside" | "by")
+    }
+
     pub(super) fn lane(&mut self, lane: LaneWord, placed: &Placed, carry: &mut Carry, next: Option<&Chunk>) {
         let fronted = matches!(next, Some(Chunk::Noun(_) | Chunk::Pronoun | Chunk::Piece(_)));
         // "kept to the right lane": it is in it.
@@ -561,6 +569,7 @@ impl Parser<'_> {
         let over = carry.frame.and_then(|frame| self.frames[frame].act());
         let moves = matches!(over, Some(Act::LaneChange | Act::Drift | Act::Swerve | Act::Enter));
         if toward && (lane == LaneWord::Shoulder || !moves)
+            || self.is_lane_of_a_place(placed.first)
             || self.is_lane_of_others(placed.first)
             || self.is_astride(placed)
         {

@@ -170,7 +170,12 @@ pub fn story(text: &str, own: Own<'_>) -> Story {
     for at in 0..tokens.len() {
         let named = tokens[at].capital && tokens[at].text.len() > 2 && tokens[at].text == own.company;
         // "A Tesla struck it": of the company only in its own reports.
-        let make = |meaning: Meaning| matches!(meaning, Meaning::Make) && MAKERS.contains(&own.company);
+        // "The Finch pulled over", "a Taxico vehicle": to a company that is called by a word for somebody, it is its name.
+        let make = |meaning: Meaning| match meaning {
+            Meaning::Make => MAKERS.contains(&own.company),
+            Meaning::Kind(_) => true,
+            _ => false,
+        };
         if named && Lexicon::get().longest(&tokens, at, |meaning| !make(meaning)).is_none() {
             COMPANY.clone_into(&mut tokens[at].text);
         }

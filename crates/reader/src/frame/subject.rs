@@ -319,6 +319,18 @@ impl Parser<'_> {
             return Some(Mention { actor, piece: None, person: None, end: placed.first });
         }
         let other = last.actor != SUBJECT && !carry.began;
+        // "steered in reaction to a van in the next lane cutting in".
+        if other && !carry.after_comma && self.is_reacted_to(last.end, placed.first) {
+            return Some(last.clone());
+        }
+        // "braked for a van cutting in, apparently trying to turn": nobody guesses at what it does itself.
+        let guessed = placed.first.checked_sub(1).is_some_and(|at| {
+            matches!(self.tokens[at].text.as_str(), "apparently" | "presumably" | "seemingly" | "likely" | "possibly")
+        });
+        let before = carry.frame.map(|frame| &self.frames[frame]).filter(|frame| frame.form == Form::Ing);
+        if let Some(actor) = before.and_then(|frame| frame.who).filter(|who| guessed && *who != SUBJECT) {
+            return Some(Mention { actor, piece: None, person: None, end: placed.first });
+        }
         // "braked for a man in the road, running towards it": nobody runs towards itself.
         let of_subject = carry.subject.as_ref().is_some_and(|subject| subject.actor == SUBJECT);
         if other && of_subject && self.world.actors[last.actor].acts() && self.goes_to_subject(placed.end) {
@@ -330,6 +342,18 @@ impl Parser<'_> {
             (before.sense, before.form, before.object) == (Sense::See, Form::Ing, Some(last.actor))
         });
         (other && seen && !carry.after_comma && last.end == placed.first).then(|| last.clone())
+    }
+
+    /// Whether the noun that ends here stands behind "in reaction to", and nothing parts it from the participle: to what it does.
+    fn is_reacted_to(&self, end: usize, participle: usize) -> bool {
+        let word = |at: usize| self.tokens[at].text.as_str();
+        let ends = |at: usize| matches!(word(at), "," | "." | "and" | "that" | "which" | "was" | "when" | "as");
+        let noun = end.saturating_sub(2 * NOUN_WORDS)..end;
+        let to = noun.rev().take_while(|at| !ends(*at)).find(|at| word(*at) == "to");
+        let reacts = to.is_some_and(|to| {
+            to > 0 && matches!(word(to - 1), "reaction" | "response" | "reacting" | "responding" | "due" | "owing")
+        });
+        reacts && !(end..participle).any(ends)
     }
 
     /// "with traffic still waiting ahead, a van struck it": of the noun behind "with".

@@ -75,6 +75,7 @@ impl Parser<'_> {
         let beside = meanwhile.clone().or(while_struck).or_else(|| self.was_turning(&verb, carry)).or(beside);
         let who =
             beside.or_else(|| self.who_of(verb.sense, form, verb.placed(), carry, purpose, another_finite(all, at)));
+        let who = who.or_else(|| self.left_out(&verb, carry)).or_else(|| self.in_clause_of_object(&verb, carry));
         carry.reduced &= !finite;
         let unknown = self.is_of_unknown(&verb, carry);
         // "A fault caused it to brake": it braked.
@@ -125,6 +126,41 @@ impl Parser<'_> {
         }
         carry.has_verb |= finite && !described || unnamed || carry.stranger;
         self.carry_on(&verb, number, leads, carry);
+    }
+
+    /// "Seeing that the van was not going to yield, it braked": what is seen has a verb of its own.
+    fn in_clause_of_object(&self, verb: &Spoken<'_>, carry: &Carry) -> Option<Mention> {
+        let small = |placed: &&Placed| {
+            matches!(placed.chunk, Chunk::Word | Chunk::Not | Chunk::Be | Chunk::Preposition("to"))
+                || matches!(placed.chunk, Chunk::Verb(Sense::Act(Act::Follow), Form::Ing))
+        };
+        let before = &verb.all[..verb.at];
+        let between = before.iter().rev().take_while(small).count();
+        let (lead, row) = before.split_at(before.len() - between);
+        let was =
+            row.first().is_some_and(|placed| matches!(self.tokens[placed.first].text.as_str(), "was" | "were" | "is"));
+        let last = carry.last.as_ref().filter(|last| lead.last().is_some_and(|noun| noun.end == last.end))?;
+        let seen = carry.frame.is_some_and(|frame| {
+            self.frames[frame].sense == Sense::See && self.frames[frame].object == Some(last.actor)
+        });
+        (was && seen && carry.subject.is_none()).then(|| last.clone())
+    }
+
+    /// "At the time of contact, was stopped for traffic": whose report it is.
+    fn left_out(&self, verb: &Spoken<'_>, carry: &Carry) -> Option<Mention> {
+        let stands = matches!(verb.sense, Sense::Act(Act::Stop | Act::Hold | Act::Follow | Act::Slow));
+        let before = &verb.all[..verb.at];
+        // "was" may be a chunk by itself, or a word of the verb.
+        let (finite, lead) = match before {
+            [lead @ .., be] if matches!(be.chunk, Chunk::Be) => (true, lead),
+            lead => (verb.word(self) == "was", lead),
+        };
+        let named = lead.iter().any(|placed| matches!(placed.chunk, Chunk::Noun(_) | Chunk::Pronoun | Chunk::Verb(..)));
+        let begins = lead.last().is_none_or(|last| matches!(last.chunk, Chunk::Comma)) && !named;
+        let unnamed = carry.subject.is_none() && carry.main.is_none() && !carry.stranger;
+        let by = next_preposition(verb.all, verb.at) == Some("by");
+        let told = stands && finite && begins && unnamed && !by;
+        told.then_some(Mention { actor: SUBJECT, piece: None, person: None, end: verb.placed().first })
     }
 
     /// "towing a trailer. ... The trailer came loose": from here on it is one by itself.
@@ -288,6 +324,8 @@ impl Parser<'_> {
             _ if carry.pushed => Progress::Real,
             Some(Act::Pass | Act::Park | Act::LaneChange) if going => Progress::Tried,
             Some(Act::Turn) if enters => Progress::Real,
+            // "slowed to move into the right lane".
+            Some(Act::LaneChange) if before.is_some_and(|before| before.act() == Some(Act::Slow)) => Progress::Tried,
             // "maneuvered to make a right turn".
             Some(Act::Turn) if maneuvers => Progress::Tried,
             _ => Progress::Wished,

@@ -9,6 +9,12 @@ pub(super) fn is_big_truck(kind: Kind) -> bool {
     matches!(kind, Kind::HeavyTruck | Kind::SemiTrailerTruck)
 }
 
+/// Whether nobody calls it a passenger vehicle.
+pub fn is_no_passenger_vehicle(kind: Kind) -> bool {
+    matches!(kind, Kind::Bus | Kind::SchoolBus | Kind::Tram | Kind::SemiTrailerTruck | Kind::GarbageTruck)
+        || kind.group() == KindGroup::Motorcycle
+}
+
 /// Whether somebody of this kind does things.
 pub(super) fn acts(kind: Kind) -> bool {
     !matches!(kind.group(), KindGroup::Object)

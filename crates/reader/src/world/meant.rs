@@ -2,7 +2,7 @@
 //!
 //! A new rule goes into [`RULES`], before all that would say something else of its noun.
 
-use super::kinds::{acts, contradicts, introduces, is_big_truck, relation_of, same_kind};
+use super::kinds::{acts, contradicts, introduces, is_big_truck, is_no_passenger_vehicle, relation_of, same_kind};
 use super::{Actor, Known, SUBJECT, World};
 use crate::chunk::{Article, Noun};
 use crate::lexicon::{Adjective, Occupant, Relation};
@@ -57,7 +57,7 @@ impl Sought<'_> {
     /// Whether kind, number and names allow that somebody is meant.
     fn fits(&self, known: &Known) -> bool {
         let noun = self.noun;
-        known.kind.is_none_or(|known| same_kind(known, self.kind))
+        known.kind.is_none_or(|known| same_kind(known, self.kind) && !(noun.passenger && is_no_passenger_vehicle(known)))
             && (noun.number.is_none() || known.number.is_none() || noun.number == known.number)
             && !contradicts(&known.names, &noun.names)
             // "A van two cars behind it ran into the sedan right behind it".
@@ -213,10 +213,13 @@ impl World {
         Some(announced.map_or(Meant::New, Meant::Known))
     }
 
-    /// "It was rear-ended. ... A bus overtook it": not the one that is announced, where the record says that it was a car.
+    /// "It was rear-ended. ... A bus overtook it": not the one that is announced, where the record says that it was a car, or the bus is
+    /// told to be beside it.
     fn is_no_car(&self, sought: &Sought<'_>, known: &Known) -> bool {
         let large = matches!(sought.kind, Kind::Bus | Kind::SchoolBus | Kind::Tram);
-        large && self.with_car && known.announced && known.kind == Some(Kind::Vehicle)
+        let beside = matches!(sought.hint, Some(Relation::Left | Relation::Right | Relation::Beside));
+        let behind = known.relations.iter().any(|(place, _)| *place == Relation::Behind);
+        large && (self.with_car || beside && behind) && known.announced && known.kind == Some(Kind::Vehicle)
     }
 
     /// The only one of just this kind who was met.
@@ -342,7 +345,9 @@ impl World {
             let group = noun.several && sought.has(Adjective::Parked);
             // "The lead vehicle", "the oncoming vehicle": seen from it, and so another one.
             let seen = relation_of(noun).is_some();
-            if known && only && hint.is_none() && noun.names.is_empty() && !group && !seen {
+            // "A bus came over, and the passenger vehicle ...": the bus it is not.
+            let third = noun.passenger && self.actors.len() > 1;
+            if known && only && hint.is_none() && noun.names.is_empty() && !group && !seen && !third {
                 self.plain |= self.actors[SUBJECT].mentions == 0;
                 return Some(Meant::Known(SUBJECT));
             }
@@ -382,6 +387,11 @@ impl World {
             Occupant::Driver if plain && hint.is_some() => {
                 let there = |known: &Known| known.relations.iter().any(|(place, _)| Some(*place) == hint);
                 let known = self.latest(|known| known.kind.is_some_and(Kind::is_vehicle) && there(known));
+                known.unwrap_or_else(|| self.add_vehicle())
+            }
+            // "The at-fault driver", "the adverse driver": of another vehicle.
+            Occupant::Driver if plain && noun.adjectives.contains(&Adjective::Other) => {
+                let known = self.latest(|known| known.kind.is_some_and(Kind::is_vehicle) && !known.several);
                 known.unwrap_or_else(|| self.add_vehicle())
             }
             Occupant::Driver if plain && !self.own_driver => {

@@ -8,7 +8,7 @@ use crate::lexicon::{Adjective, Relation};
 use kinds::{acts, relation_of};
 use recrash_model::account::{Compass, Kind, KindGroup, LaneWord};
 
-pub use kinds::same_kind;
+pub use kinds::{is_no_passenger_vehicle, same_kind};
 
 /// Somebody or something in the story, by its place in [`World::actors`].
 pub type Actor = usize;
@@ -59,6 +59,8 @@ pub struct Known {
     pub group: Option<Actor>,
     /// It was called a tractor.
     pub tractor: bool,
+    /// It was called a passenger vehicle.
+    pub passenger: bool,
     /// It was called parked, or told to stand.
     pub parked: bool,
     /// Who tows it.
@@ -181,6 +183,7 @@ impl World {
         let known = &mut self.actors[actor];
         known.sentence = Some(self.sentence);
         known.tractor |= noun.tractor;
+        known.passenger |= noun.passenger && noun.occupant.is_none();
         known.parked |= noun.occupant.is_none() && noun.adjectives.contains(&Adjective::Parked);
         known.last = self.clock;
         known.mentions += 1;

@@ -199,3 +199,59 @@ fn a_lane_change_away_from_the_touched_corner_was_followed() {
     let facts = beside(text, |record| record.cp_movement = Coded::Known(Movement::Straight));
     assert_eq!(facts["came_from"], "behind");
 }
+
+#[test]
+fn a_company_that_is_called_as_a_car_is_is_nobody_else() {
+    let told = [
+        "The Bronco was traveling north when a van struck the rear of the Bronco.",
+        "A Bronco Autonomous Vehicle was stopped at a light. A van struck the Bronco vehicle's rear bumper.",
+        "Bronco was proceeding straight when a van swerved and touched the Bronco AV's left side.",
+    ];
+    for text in told {
+        let own = beside(text, |record| record.entity = "Bronco Mobility".to_owned());
+        assert_eq!((own["others"].as_str(), own["cp_kind"].as_str()), ("", "van"), "{text}");
+    }
+    let other = beside(told[0], |_| {});
+    assert_ne!((other["others"].as_str(), other["cp_kind"].as_str()), ("", "van"));
+    let animal = beside("The AV braked for a pony, and a van struck its rear.", |_| {});
+    assert_eq!(animal["others"], "animal");
+    let company = beside("The Pony AV was stopped, and a van struck the Pony AV's rear.", |_| {});
+    assert_eq!(company["others"], "");
+}
+
+#[test]
+fn a_column_that_names_a_bystander_is_not_of_who_touched() {
+    let rider = "The AV yielded to a cyclist who moved over from the bike lane, and a passenger vehicle then struck the rear of the AV.";
+    let named = beside(rider, |record| record.partner = Coded::Known(PartnerKind::Cyclist));
+    assert_eq!((named["cp_kind"].as_str(), named["others"].as_str()), ("vehicle", "bicycle"));
+    let bus = "The AV yielded to a bus that was changing into its lane from the right, and another vehicle struck its left rear corner.";
+    let named = beside(bus, |record| {
+        (record.partner, record.cp_movement) = (Coded::Known(PartnerKind::Bus), Coded::Known(Movement::ChangingLanes));
+    });
+    assert_eq!((named["cp_kind"].as_str(), named["cp_movement"].as_str()), ("vehicle", "straight"));
+    // Where the words leave open who it was, the column tells.
+    let open = "The AV yielded to a bus, and a vehicle struck its left rear corner.";
+    let named = beside(open, |record| record.partner = Coded::Known(PartnerKind::Van));
+    assert_eq!(named["cp_kind"], "van");
+}
+
+#[test]
+fn the_damaged_corner_of_the_words_stands_before_the_other_one_of_the_column() {
+    for words in ["damaging the AV's front right headlamp", "causing damage to the right fender of the AV"] {
+        let text = format!("The AV was traveling north and struck a van, {words}.");
+        let zones = |column: Z| beside(&text, |record| record.sv_zones = vec![column]).remove("sv_zones");
+        assert_eq!(zones(Z::FrontLeft).as_deref(), Some("front_right"), "{words}");
+        assert_eq!(zones(Z::FrontRight).as_deref(), Some("front_right"), "{words}");
+        assert_eq!(zones(Z::Front).as_deref(), Some("front"), "{words}");
+    }
+}
+
+#[test]
+fn who_was_giving_way_and_moves_by_the_column_was_slowing() {
+    let text = "The AV was yielding to traffic on Elm Street when a van struck the rear of the AV.";
+    let acts = |movement: Movement| {
+        beside(text, |record| record.sv_movement = Coded::Known(movement)).remove("sv_acts").unwrap_or_default()
+    };
+    assert_eq!(acts(Movement::Straight), "slow");
+    assert_eq!(acts(Movement::Stopped), "");
+}

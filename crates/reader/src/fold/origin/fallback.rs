@@ -2,7 +2,7 @@
 
 use super::{Clues, forward};
 use crate::fold::Reading;
-use crate::fold::party::has_zone;
+use crate::fold::party::{has_zone, movement_column};
 use crate::lexicon::Relation;
 use recrash_model::account::{Account, Act, ActFact, ContactState, Fact, KindGroup, LeftRight, Origin, Party, told};
 use recrash_model::template::{Movement, RoadType};
@@ -81,7 +81,7 @@ pub(super) fn by_columns(reading: &Reading<'_>, account: &Account) -> Option<Fac
     if told(&partner.kind).is_some_and(|kind| matches!(kind.group(), KindGroup::Object | KindGroup::Animal)) {
         return None;
     }
-    let (cp, sv) = (reading.record.cp_movement.known(), reading.record.sv_movement.known());
+    let (cp, sv) = (movement_column(reading), reading.record.sv_movement.known());
     // Who ran a light or a sign crossed: met on its left it came from the right.
     let ran = partner.did(Act::RunRed) || partner.did(Act::RunStop);
     let (left, right) = (
@@ -127,7 +127,8 @@ pub(super) fn by_columns(reading: &Reading<'_>, account: &Account) -> Option<Fac
     let into_rear = sv_rear
         && partner.zones.is_empty()
         && account.sv.zones.iter().all(|zone| zone.value.is_rear() && zone.source.is_told());
-    let turns = [Act::Turn, Act::Reverse, Act::LaneChange, Act::Cross].into_iter().any(|act| partner.did(act));
+    let turns =
+        [Act::Turn, Act::UTurn, Act::Reverse, Act::LaneChange, Act::Cross].into_iter().any(|act| partner.did(act));
     if into_rear && !turns && told(&account.sv.state) != Some(ContactState::Reversing) {
         return rule(Origin::Behind);
     }

@@ -11,11 +11,13 @@ use super::places::{
     on_side_street, passes_subject, screen, side_of_road, side_of_screen, turn_onto_its_street,
 };
 use super::{Clues, changed_from, first_relation, lane_side, relation_to};
+use crate::chunk::Joint;
 use crate::fold::Reading;
 use crate::fold::party::has_zone;
 use crate::fold::types::{turn_side, turning};
 use crate::frame::Frame;
 use crate::lexicon::{Relation, Sense};
+use crate::token::{Token, TokenKind};
 use crate::world::{Actor, SUBJECT};
 use recrash_model::account::{
     Account, Act, ActFact, Compass, ContactState, Fact, KindGroup, LaneWord, LeftRight, Origin, Party, RoadFeature,
@@ -106,6 +108,14 @@ fn by_rule(value: Origin, name: &str) -> Told {
     Some(Fact::by_rule(value, name))
 }
 
+/// "As it was completing its turn": it was still turning. "After completing its turn" is over.
+fn is_being_completed(reading: &Reading<'_>, fact: &ActFact) -> bool {
+    let Source::Words { start, text, .. } = &fact.source else { return false };
+    let ing = ["completing", "finishing"].iter().any(|word| text.starts_with(word));
+    let frame = || reading.story.frames.iter().find(|frame| reading.story.tokens[frame.first].start == *start);
+    ing && frame().is_none_or(|frame| frame.joint != Some(Joint::After))
+}
+
 fn is_flank(zone: Z) -> bool {
     matches!(zone, Z::Left | Z::Right)
 }
@@ -143,15 +153,36 @@ impl<'a> Case<'a> {
         let turned = |fact: &&recrash_model::account::ActFact| {
             !fact.after_contact && !fact.begun && matches!(fact.act, Act::Turn | Act::UTurn)
         };
-        let done = account.sv.acts.iter().any(|fact| turned(&fact) && fact.done);
+        let done = account.sv.acts.iter().any(|fact| turned(&fact) && fact.done && !is_being_completed(reading, fact));
         let turned = account.sv.acts.iter().any(|fact| turned(&fact)) && !turning(&account.sv) || done;
         let turned = account.sv.heading_after.as_ref().filter(|_| turned);
         let own = turned.map(|fact| fact.value).or_else(|| after_its_turn(account));
         // Who faces one way and goes backwards comes from there.
         let backs_from = case.did(Act::Reverse) && faces_only(reading, actor);
         let other = case.heading.map(|other| other.value.turned(if backs_from { 4 } else { 0 }));
-        case.turn = own.zip(other).map(|(own, other)| own.eighths_to(other));
+        let turn = own.zip(other).map(|(own, other)| own.eighths_to(other));
+        // "southeast on 9th, and southwest on 9th": along one street.
+        let square = matches!(turn, Some(2 | 3 | 5 | 6)) && !backs_from && case.on_one_street();
+        case.turn = if square { Some(4) } else { turn };
         Some(case)
+    }
+
+    /// Whether both directions are told of a street of one name.
+    fn on_one_street(&self) -> bool {
+        let (one, other) = (self.street(self.account.sv.heading.as_ref()), self.street(self.heading));
+        !one.is_empty() && one == other
+    }
+
+    /// The name of the street behind a direction: "southbound North 9th Street"; a name that is left out is none.
+    fn street(&self, heading: Option<&Fact<Compass>>) -> Vec<&'a str> {
+        let Some(Source::Words { end, .. }) = heading.map(|heading| &heading.source) else { return Vec::new() };
+        let written = |token: &&Token| {
+            let name = token.capital || token.text.starts_with(|c: char| c.is_ascii_digit());
+            name && !token.text.contains("xxx") && token.kind != TokenKind::Mark
+        };
+        let behind = self.reading.story.tokens.iter().skip_while(|token| token.start < *end);
+        let name = behind.skip_while(|token| matches!(token.text.as_str(), "on" | "along"));
+        name.take_while(written).map(|token| token.text.as_str()).collect()
     }
 
     /// What it did up to the contact.
