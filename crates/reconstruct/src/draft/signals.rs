@@ -18,8 +18,9 @@ const ALWAYS_S: f64 = 600.0;
 const CHANGED_S: f64 = 3.0;
 const CHANGED_BEFORE_DRIVING_S: f64 = 7.5;
 
-/// A yellow light; the shortest that there is, for who brakes for it. [s]
+/// A yellow light; the longest that there is, and the shortest, for who brakes for it. [s]
 const YELLOW_S: f64 = 4.0;
+const LONGEST_YELLOW_S: f64 = 5.0;
 const SHORT_YELLOW_S: f64 = 3.0;
 
 /// A light has turned yellow so long before who stops for it brakes, and is red so long before the contact at the latest. [s]
@@ -88,6 +89,7 @@ pub(crate) fn devices(told: &Told, ground: &Ground, ego: &ActorPlan, actors: &[A
         let own = Some(ego).filter(|_| !told.green_late);
         let of_queue = others.chain(own).filter_map(sets_off_s).chain(backed);
         let first_s = of_queue.filter(|_| is_ego).reduce(f64::min);
+        let yellow_s = first_s.filter(|at_s| told.contact_s - at_s < LONGEST_YELLOW_S);
         // Who sets off behind an ego that has yet to come to a stand, and stays, does not do so because it is green.
         let stays_s = halts(ego).pop().filter(|halt| halt.is_last && halt.stands_s < told.contact_s);
         let stays_s = stays_s.filter(|_| sets_off_s(ego).is_none()).map(|halt| halt.stands_s);
@@ -103,7 +105,7 @@ pub(crate) fn devices(told: &Told, ground: &Ground, ego: &ActorPlan, actors: &[A
         let merges = matches!(told.sv.movement, Some(Movement::ChangingLanes | Movement::Merging)) && !told.enters();
         let drives_on = told.sv.state.stands() && told.sv.turning != Turning::No
             || told.sv.stood_first && said.obeyed == Some(Obeyed::Yes) && told.origin != Origin::Behind && !merges;
-        let stood_there = is_ego && drives_on && said.state == Some(SignalState::Red);
+        let stood_there = is_ego && drives_on && said.state == Some(SignalState::Red) && !told.keeps_red();
         let state = if stood_there && sets_off_s(ego).is_some() { Some(SignalState::TurnedGreen) } else { said.state };
         // Who turns right, and gives way to crossing traffic, does so at red.
         let crossed = actors.iter().any(|actor| actor.id == Role::Crosser.id());
@@ -126,7 +128,11 @@ pub(crate) fn devices(told: &Told, ground: &Ground, ego: &ActorPlan, actors: &[A
         match (braking, state) {
             (Some(halt), Some(SignalState::TurnedRed)) => Some(turns_red(halt.brakes_s, told.contact_s)),
             // Who entered at yellow, and brakes in the junction, came to it then.
-            (Some(halt), Some(SignalState::Yellow)) if told.enters() => Some(turns_yellow(halt.brakes_s)),
+            (Some(halt), Some(SignalState::Yellow)) if told.enters() => Some(turns_yellow(halt.brakes_s, YELLOW_S)),
+            // Who waited sets off when it turns yellow.
+            (_, Some(SignalState::Yellow)) if let Some(goes_s) = yellow_s => {
+                Some(turns_yellow(goes_s, LONGEST_YELLOW_S))
+            }
             _ => Some(program(state, side, told.contact_s, changed_s.max(0.1))),
         }
     };
@@ -151,6 +157,9 @@ pub(crate) fn devices(told: &Told, ground: &Ground, ego: &ActorPlan, actors: &[A
     }
     // A light of its own that is told of who comes from ahead may show something else.
     let ahead = said[1].as_ref().filter(|(arm, ..)| *arm == "ahead-").and_then(|_| signal(&said[1]));
+    // Nobody comes from there at green while the ego turns left on an arrow.
+    let arrow = told.layout.arrow && told.sv.turning == Turning::Left && !comes_by;
+    let ahead = ahead.or_else(|| arrow.then(|| vec![Phase { show: Aspect::Red, for_s: ALWAYS_S }]));
     for (arms, program) in [(["own-", "ahead-"], along), (["left-", "right-"], across)] {
         for arm in arms {
             let program = if arm == "ahead-" { ahead.as_ref().or(program.as_ref()) } else { program.as_ref() };
@@ -214,11 +223,11 @@ fn turns_red(brakes_s: f64, contact_s: f64) -> Vec<Phase> {
     ]
 }
 
-/// A light that turns yellow right before somebody brakes who comes over its line nevertheless.
-fn turns_yellow(brakes_s: f64) -> Vec<Phase> {
+/// A light that turns yellow right before somebody brakes who comes over its line nevertheless, or sets off.
+fn turns_yellow(acts_s: f64, for_s: f64) -> Vec<Phase> {
     vec![
-        Phase { show: Aspect::Green, for_s: (brakes_s - YELLOW_BEFORE_BRAKING_S).max(0.1) },
-        Phase { show: Aspect::Yellow, for_s: YELLOW_S },
+        Phase { show: Aspect::Green, for_s: (acts_s - YELLOW_BEFORE_BRAKING_S).max(0.1) },
+        Phase { show: Aspect::Yellow, for_s },
         Phase { show: Aspect::Red, for_s: ALWAYS_S },
     ]
 }

@@ -35,7 +35,7 @@ const LEAST_ROLL_S: f64 = 0.3;
 /// What the ego did before its last phase where that is told, and its last pace.
 pub(crate) fn ego_paces(told: &Told, ground: &Ground, sv_s_m: f64) -> (Option<Lead>, Pace) {
     let (sv, contact_s) = (&told.sv, told.contact_s);
-    if told.stays_at_kerb() {
+    if told.stays_at_kerb() || told.stands_for_slow_backer() {
         return (None, STANDING);
     }
     let choices = &told.choices;
@@ -182,7 +182,8 @@ fn from_line(told: &Told, ground: &Ground, sv_s_m: f64) -> Option<Pace> {
             let at_sign = said.device == ControlDevice::StopSign && !yet_to_stop;
             sv.state == ContactState::SettingOff || sv.stood_first || at_sign
         }
-        None => sv.stood_first,
+        // Who sets off and comes into the junction did so from before it.
+        None => sv.stood_first || sv.state == ContactState::SettingOff && told.enters(),
     };
     let stops = stops && matches!(sv.state, ContactState::SettingOff | ContactState::Moving);
     let driven_m = past_line_m(told, ground, sv_s_m).filter(|_| stops)?;
@@ -233,7 +234,17 @@ fn slows_in_turn(told: &Told, past_line_m: Option<f64>) -> Option<Pace> {
     })
 }
 
+/// Who backs no faster than this takes all the time that there is. [m/s]
+const SLOW_BACKER_MPS: f64 = 0.6;
+
 impl Told {
+    /// Whether the ego is told to have stood before the partner began to back, which does so very slowly: it has stood there from the start.
+    fn stands_for_slow_backer(&self) -> bool {
+        let backs = self.cp.state == ContactState::Reversing && self.cp.speed_mps <= SLOW_BACKER_MPS;
+        let plain = self.sv.phases.is_empty() && self.cp.phases.is_empty() && self.sv.state == ContactState::Stopped;
+        backs && plain && self.sv.stands_from_start && self.stood_before
+    }
+
     /// Whether the partner is told to have come to a stop behind an ego that stood, and was thrown against it then.
     fn stops_behind_and_is_thrown(&self) -> bool {
         let stops = |doing: &Doing| doing.comes_to_stand() && doing.is_behind_other();

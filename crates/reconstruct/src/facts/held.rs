@@ -362,7 +362,8 @@ impl<'a> Crash<'a> {
             let (said, track) = (side.control?, track?);
             let of_partner = kind == CheckKind::CpControl;
             let arm = signals::own_arm(self.told, self.scenario).filter(|_| of_partner);
-            let seen = signals::check(said, arm, self.scenario, track, self.touch.time_s);
+            let asked = signals::Asked { said, arm, may_at_red: !of_partner && self.told.keeps_red() };
+            let seen = signals::check(asked, self.scenario, track, self.touch.time_s);
             let beside = of_partner && signals::is_beside_road(self.told);
             Some(held(kind, signals::words(said), if beside { signals::beside_road(seen) } else { seen }))
         })
@@ -376,7 +377,8 @@ impl<'a> Crash<'a> {
         }
         let controlled = |device: ControlDevice| {
             let said = Said { device, state: None, obeyed: Some(Obeyed::Yes) };
-            signals::check(said, None, self.scenario, self.ego_track, self.touch.time_s).0 == CheckResult::Shown
+            let asked = signals::Asked { said, arm: None, may_at_red: self.told.keeps_red() };
+            signals::check(asked, self.scenario, self.ego_track, self.touch.time_s).0 == CheckResult::Shown
         };
         let holds = |reason: &StandReason| match reason {
             StandReason::RedLight => controlled(ControlDevice::Signal),

@@ -152,6 +152,18 @@ pub(super) fn weaves(told: &Told, track: &ActorTrack, contact_s: f64) -> usize {
     few + ABSURD * absurd.into_iter().filter(|is| *is).count()
 }
 
+/// Who came along the road before it backed in line was at no more to it. [rad]
+const CAME_ASKEW_RAD: f64 = 0.03;
+
+/// Whether somebody who came along the ego's road, stood, and backs drove at an angle to that before.
+pub(super) fn drives_askew(told: &Told, ego: &ActorTrack, track: &ActorTrack) -> bool {
+    let along = matches!(told.origin, Origin::Ahead | Origin::Behind) && told.sv.turning == Turning::No;
+    let backs = told.cp.state == ContactState::Reversing && told.cp.turning == Turning::No;
+    let came = track.states[0].speed() > STANDS_MPS && told.cp.slants.is_none();
+    let off = math::wrap_angle(track.states[0].heading - ego.states[0].heading).abs();
+    along && backs && came && (CAME_ASKEW_RAD..ALONG_RAD).contains(&off)
+}
+
 /// Whether somebody that passes and is told to touch with its flank or rear still moves away from the other one as it touches: it would not
 /// rub along it, but have left it.
 pub(super) fn leaves_whom_it_passes(told: &Told, ego: &ActorTrack, track: &ActorTrack, contact_s: f64) -> bool {

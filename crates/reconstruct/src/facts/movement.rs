@@ -42,7 +42,7 @@ const TURNS_NO_MORE_DEG: f64 = 5.0;
 
 /// Who has yet to turn has turned to the other side by no more; and by so much to its own where the other one has turned by that. [deg]
 const OTHER_WAY_DEG: f64 = 4.0;
-const FAR_IN_TURN_DEG: f64 = 45.0;
+const FAR_IN_TURN_DEG: f64 = 30.0;
 const BEGUN_DEG: f64 = 8.0;
 
 /// Who goes straight on along a lane, and is not told to have left it, has turned by no more. [deg]
@@ -316,7 +316,9 @@ pub(super) fn check(side: &Side, way: &Way<'_>) -> Option<(String, CheckResult, 
     let (dodges, dodged) = sideways(LEFT_LINE_M);
     let shown = shown && turns && (dodges || !side.dodges);
     let observed = if side.dodges { format!("{observed}, {dodged}") } else { observed };
-    Some((word(side), if shown { CheckResult::Shown } else { CheckResult::NotShown }, observed))
+    let turn = matches!(movement, Movement::LeftTurn | Movement::RightTurn);
+    let later = if turn && side.turns_later && turned.abs() < BEGUN_DEG { ", yet to begin" } else { "" };
+    Some((word(side) + later, if shown { CheckResult::Shown } else { CheckResult::NotShown }, observed))
 }
 
 /// Who backs into a space at the kerb has come out of its line by so much while it reversed, and was at an angle to it. [m, deg]

@@ -71,11 +71,17 @@ pub(super) fn beside_road((result, observed): (CheckResult, String)) -> (CheckRe
 /// No line of a signal or a sign is on somebody's way.
 const NONE: &str = "none on its way";
 
-/// Whether a told signal or sign stood before somebody, at its arm where that is known, showed what is told, and was obeyed or not as
-/// told. Who came to a stand for a light that changed did so before it was green.
+/// A told signal or sign; the arm at which it stands, where that is known; and whether who stood there first may come over its line at red.
+pub(super) struct Asked<'a> {
+    pub(super) said: Said,
+    pub(super) arm: Option<&'a str>,
+    pub(super) may_at_red: bool,
+}
+
+/// Whether a told signal or sign stood before somebody, showed what is told, and was obeyed or not as told. Who came to a stand for a
+/// light that changed did so before it was green.
 pub(super) fn check(
-    said: Said,
-    arm: Option<&str>,
+    Asked { said, arm, may_at_red }: Asked<'_>,
     scenario: &Scenario,
     track: &ActorTrack,
     contact_s: f64,
@@ -124,7 +130,10 @@ pub(super) fn check(
     let kept = match control.device {
         Device::StopSign {} => passage.crossed_s.is_none() || passage.stood_s.is_some(),
         Device::YieldSign {} => passage.crossed_s.is_none_or(|at_s| passage.stood_s.is_some() || slowed(track, at_s)),
-        Device::Signal { .. } => passage.crossed_s.is_none_or(|at_s| shows(at_s) != Some(Aspect::Red)),
+        Device::Signal { .. } => {
+            let stood_first = may_at_red && passage.stood_s.is_some();
+            stood_first || passage.crossed_s.is_none_or(|at_s| shows(at_s) != Some(Aspect::Red))
+        }
     };
     let obeyed = match said.obeyed {
         None => true,

@@ -91,6 +91,7 @@ pub(crate) fn off_its_way(told: &Told, scenario: &Scenario, rollout: &Rollout) -
         keeping::weaves(told, track, time_s)
             + usize::from(keeping::leaves_whom_it_passes(told, ego, track, time_s))
             + if keeping::goes_out_of_way(told, ego, track, time_s) { ABSURD } else { 0 }
+            + if keeping::drives_askew(told, ego, track) { ABSURD } else { 0 }
             + if told.is_beside_line(ego, track) || told.is_far_beside(ego, track) { ABSURD } else { 0 }
             + if strikes_as_told(told, rollout) == Some(false) { ABSURD } else { 0 }
             + if told.keeps_within_lanes() && is_over_edge(told, scenario, track, time_s) { OVER_EDGE } else { 0 }

@@ -195,8 +195,7 @@ pub(super) fn junction(told: &Told, crossing: bool) -> Ground {
     let beside = if crosses { usual.to_vec() } else { beside };
     let across = Across { lanes, lane, oncoming: if one_way { 0 } else { lanes }, beside };
     let ground = with_way(map, vec!["own-".to_owned(), exit.to_owned()], across, places, true);
-    let stands_m = if at_kerb { ground.kerbs_m[1] } else { 0.0 };
-    let ground = Ground { stands_m, ..ground };
+    let ground = if at_kerb { ground.at_kerb(told.is_partly_in_lane()) } else { ground };
     if told.sv.turned { ground.after_turn() } else { ground }
 }
 

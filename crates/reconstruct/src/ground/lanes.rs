@@ -13,7 +13,7 @@ use recrash_model::zones::ContactZone;
 
 /// Who is parked on the left, facing as the ego does, is so on a one-way street.
 pub(super) fn is_one_way(told: &Told) -> bool {
-    matches!(told.origin, Origin::Parked { side: Some(LeftRight::Left) })
+    matches!(told.origin, Origin::Parked { side: Some(LeftRight::Left) }) || told.leaves_left_kerb()
 }
 
 /// Lanes in the ego's direction: as told, and at least as many as the told lanes need.
@@ -32,7 +32,10 @@ pub(super) fn lanes_for(told: &Told, usual: usize) -> usize {
     if told.edge.is_some() && turns && told.sv.lane.is_none() {
         return 1;
     }
-    let needed = [(told.sv.lane, true), (told.cp.lane, false)].into_iter().map(|(word, of_ego)| match word {
+    // A lane of a crossing road is none of a narrow street's.
+    let crosses = told.layout.narrow && matches!(told.origin, Origin::Cross { .. });
+    let words = [(told.sv.lane, true), (told.cp.lane.filter(|_| !crosses), false)];
+    let needed = words.into_iter().map(|(word, of_ego)| match word {
         // A lane that is counted from one side is not the last on the other, but where as many are told.
         Some(LaneWord::Center) => match told.counted(of_ego) {
             Some(counted) => counted.number + usize::from(told.lanes.map(usize::from) != Some(counted.number)),

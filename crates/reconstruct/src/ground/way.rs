@@ -14,6 +14,9 @@ use std::sync::Arc;
 const TURNED_RAD: f64 = 1.3;
 const AFTER_TURN_M: [f64; 4] = [0.0, 3.0, 6.0, 10.0];
 
+/// The middle of who stands partly in a lane, and beside it, is so far inside of the edge of that. [m]
+const PARTLY_IN_M: f64 = 0.3;
+
 /// A road and the ego's way on it. Hundreds of ways of touching are tried on one: they share what is large.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Ground {
@@ -100,6 +103,12 @@ impl Ground {
     /// The same, with an ego whose line is so far to the right of its lane's. [m]
     pub(crate) fn standing(&self, stands_m: f64) -> Self {
         Self { stands_m, ..self.clone() }
+    }
+
+    /// The same, with an ego that stands at the kerb, or partly in its lane.
+    pub(super) fn at_kerb(self, partly: bool) -> Self {
+        let stands_m = if partly { self.lane_edges_m[1] - PARTLY_IN_M } else { self.kerbs_m[1] };
+        Self { stands_m, ..self }
     }
 
     /// Where the middle of a junction is. [m]

@@ -11,9 +11,15 @@ use recrash_model::geometry::Vec2;
 use recrash_model::math;
 use recrash_model::scenario::{ActorPlan, Deed, Leg, Place, StripKind};
 
-/// From the ego's front to who crosses, on foot or not; and to who is on foot between it and one that stands ahead. [m]
+/// From the ego's front to who crosses, on foot or not. [m]
 pub(super) const WALKER_GAP_M: f64 = 3.0;
 const CROSSER_GAP_M: f64 = 2.0;
+
+/// The same of an ego that has turned by more than this: less of it is in the way. [m, rad]
+const TURNED_GAP_M: f64 = 1.5;
+const TURNED_AWAY_RAD: f64 = 0.35;
+
+/// From the ego's front to who is on foot between it and one that stands ahead. [m]
 const WALKER_BETWEEN_M: f64 = 0.5 * LEAD_GAP_M;
 
 /// From the stop line to the lane of who crosses from the left, and from the right. [m]
@@ -84,7 +90,8 @@ impl Scene<'_> {
         let ego = self.ego.states[step].pose();
         let front = ego.position + Vec2::from_heading(ego.heading) * self.front_m();
         let room_m = lane_m - ahead.dot(front - line.position);
-        if !self.ground.junction || room_m < CROSSER_GAP_M {
+        let turned = math::wrap_angle(ego.heading - line.heading).abs() > TURNED_AWAY_RAD;
+        if !self.ground.junction || room_m < if turned { TURNED_GAP_M } else { CROSSER_GAP_M } {
             return None;
         }
         let way = if extra.side == Some(LeftRight::Right) { ahead.left() } else { ahead.left() * -1.0 };

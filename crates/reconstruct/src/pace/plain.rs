@@ -146,6 +146,15 @@ pub(crate) fn slows_abreast(contact_s: f64, speed_mps: f64, ego: &Pace) -> Pace 
     Pace { speed_mps: ego.speed_mps, acts: vec![when(from_s, brake)], driven_m }
 }
 
+/// At a speed, and then to a stop: so far.
+pub(crate) fn stops_over(speed_mps: f64, driven_m: f64) -> Option<Pace> {
+    let braking_s = speed_mps / STOPPING_MPS2;
+    let from_s = driven_m / speed_mps - 0.5 * braking_s;
+    let stop = when(from_s, Deed::Stop { rate_mps2: STOPPING_MPS2, at_m: None });
+    let acts = vec![stop, next(Deed::Hold { for_s: None })];
+    (from_s > 0.0).then_some(Pace { speed_mps, acts, driven_m })
+}
+
 /// From a stand up to more than its speed at the contact, and down to that: so far, by less where that takes farther, or as far as the
 /// usual takes.
 pub(crate) fn starts_and_slows(contact_s: f64, speed_mps: f64, driven_m: f64) -> Option<Pace> {

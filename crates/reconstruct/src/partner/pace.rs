@@ -5,7 +5,8 @@ use crate::ground::pieces::corner_m;
 use crate::pace::last::{BACKS_EARLIER_S, BEHIND_M, FOLLOWS_S, last_pace};
 use crate::pace::lead::{self, Lead, MOVES_UP_M};
 use crate::pace::plain::{
-    Pace, SETS_OFF_MPS2, STANDING, first_time, sets_off, slows, slows_abreast, start_after, start_over, when,
+    Pace, SETS_OFF_MPS2, STANDING, first_time, sets_off, slows, slows_abreast, start_after, start_over, stops_over,
+    when,
 };
 use crate::partner::beside::{self, PULL_OUT_M};
 use crate::told::crash::Told;
@@ -40,6 +41,13 @@ pub(super) fn partner_paces(told: &Told, staging: &Staging) -> (Option<Lead>, Pa
         .or_else(|| cross_from_stalls(told, staging))
         .or_else(|| beside::from_kerb(told, staging))
         .unwrap_or_else(|| partner_pace(told, staging, (&ego, ego_m, before_s)));
+    // Who stands behind an ego that came along, stood and backs came along behind it.
+    let came_m = ego_lead.as_ref().filter(|lead| lead.speed_mps > 0.0 && backs_last).map(Lead::driven_m);
+    let came_m = came_m.map(|came_m| came_m - ego.driven_m + CAME_BEHIND_M);
+    let behind = told.origin == Origin::Behind && cp.state == ContactState::Stopped && cp.phases.is_empty();
+    if let Some(came_m) = came_m.filter(|came_m| behind && *came_m > last.driven_m) {
+        return (None, stops_over(told.choices.rolling_mps, came_m).unwrap_or(last));
+    }
     let stands = cp.state.stands();
     if last.speed_mps > 0.0 && !stands {
         return (None, last);
@@ -238,6 +246,9 @@ fn turn_from_line_m(told: &Told, staging: &Staging) -> Option<f64> {
     let (sine, radius_m) = (math::sin(turn), lanes::turn_m(told));
     (along_m > radius_m * sine).then_some(along_m + radius_m * (turn - sine))
 }
+
+/// Who came along behind the ego was so far behind it. [m]
+const CAME_BEHIND_M: f64 = 4.0;
 
 /// From how far away it does. [m]
 const SLIDES_M: f64 = 4.0;

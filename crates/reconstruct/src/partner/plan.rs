@@ -83,7 +83,7 @@ const SLIM_M: f64 = 0.5;
 fn obstacle_kind(kind: Kind, told: &Told) -> ObstacleKind {
     let slim = size_of(&told.cp).0 < SLIM_M;
     match kind {
-        Kind::Pothole if told.lies == Some(Lies::Bump) => ObstacleKind::Kerb,
+        Kind::Pothole if matches!(told.lies, Some(Lies::Bump | Lies::Edge)) => ObstacleKind::Kerb,
         Kind::Wall if slim => ObstacleKind::Pole,
         Kind::Object if told.edge.is_some() => ObstacleKind::Wall,
         Kind::Debris if told.edge.is_some() => ObstacleKind::Container,

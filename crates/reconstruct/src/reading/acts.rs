@@ -28,7 +28,9 @@ pub(super) fn told(party: &Party, state: ContactState) -> Vec<Doing> {
             Act::Stop if standing => true,
             // Who turned on its way to a light or a sign did so on another road, or has yet to.
             Act::Turn => {
-                at_line && !stood && acts[number..].iter().any(|later| stands(later.act)) || turns_again(fact, &acts)
+                at_line && !stood && acts[number..].iter().any(|later| stands(later.act))
+                    || turns_again(fact, &acts)
+                    || leaves_before(fact, party)
             }
             Act::Park => list.last().is_some_and(|last| stands(last.act)),
             // So did who came out of a lot and drove along since.
@@ -81,6 +83,13 @@ pub(super) fn told(party: &Party, state: ContactState) -> Vec<Doing> {
 fn turns_again(turn: &ActFact, acts: &[&ActFact]) -> bool {
     let later = acts.iter().filter(|fact| fact.act == Act::Turn && fact.step > turn.step);
     turn.side.is_some_and(|side| later.into_iter().any(|later| later.side == Some(side.other())))
+}
+
+/// Whether a turn was over before somebody parked, or pulled over: that was another road, or is not where it did that.
+fn leaves_before(turn: &ActFact, party: &Party) -> bool {
+    let parks = told_of(&party.movement) == Some(Movement::ParkingManeuver);
+    let later = |fact: &ActFact| matches!(fact.act, Act::Park | Act::PullOver) && fact.step > turn.step;
+    parks && turn.done && party.acts.iter().any(|fact| later(fact) && !fact.after_contact)
 }
 
 /// Whether somebody who stood has set off to do this.

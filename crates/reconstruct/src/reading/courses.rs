@@ -55,15 +55,23 @@ impl Told {
         if self.thing.is_some() && !self.at_entrance && self.sv.movement == Some(Movement::Straight) {
             self.sv.turned = false;
         }
+        // Who comes from a side of an ego that drove straight on after its turn does so from that side of its new road.
+        if self.sv.turned && self.sv.movement == Some(Movement::Straight) && matches!(self.origin, Origin::Cross { .. })
+        {
+            (self.sv.turning, self.sv.turned) = (Turning::No, false);
+            self.sv.acts.retain(|doing| !doing.is_turn());
+        }
         if lies_before_turn(self, sv) {
             (self.sv.turning, self.sv.turns_later) = (Turning::No, true);
         }
-        // Whose turn no words tell has yet to begin it where it is hit from behind.
+        // Whose turn no words tell has yet to begin it where it is hit from behind, or by who passes it.
         let unsaid = sv.movement.as_ref().is_some_and(|movement| !matches!(movement.source, Source::Words { .. }))
             && !sv.acts.iter().any(|fact| fact.act == Act::Turn);
         let slows =
             self.sv.slowed_from.is_some() || matches!(self.sv.state, ContactState::Stopped | ContactState::SettingOff);
-        if unsaid && slows && self.origin == Origin::Behind && self.crash_type == CrashType::FrontToRear {
+        let passed = self.cp.movement == Some(Movement::Passing) && self.cp.turning == Turning::No;
+        let behind = self.crash_type == CrashType::FrontToRear || passed;
+        if unsaid && slows && self.origin == Origin::Behind && behind {
             let turns = matches!(self.sv.turning, Turning::Left | Turning::Right);
             self.sv.turns_later = turns && !self.enters();
         }

@@ -67,12 +67,13 @@ impl Told {
         let assumed_from =
             origin::out_of_stall(account, crash_type, &sv, &cp).or_else(|| assumed_origin(crash_type, &sv, &cp));
         let origin = origin.or(assumed_from).unwrap_or(Origin::Behind);
+        let layout = Layout::of(account, partner);
         let comes_round = origin_told && origin::comes_round(origin, partner, cp.state, cp.movement);
         let right = Some(LeftRight::Right);
         let origin = match comes_round {
             true if origin::leaves_driveway(partner) => Origin::Driveway { side: right },
             true => Origin::Parked { side: right },
-            false => origin,
+            false => origin::at_left_kerb(origin, &cp, place, thing.is_some() || layout.cp.in_lane).unwrap_or(origin),
         };
         let edge = Some(origin).filter(|_| !gate_swings && account.door.is_none());
         let edge = edge.and_then(|origin| edge::side(account, &sv, &cp, lies, origin));
@@ -140,7 +141,7 @@ impl Told {
             striker,
             strikes: striker.filter(|_| by_words),
             lanes: told(&account.place.lanes),
-            layout: Layout::of(account, partner),
+            layout,
             more_lanes: false,
             crossed_near: false,
             all_way: others::is_all_way(account),

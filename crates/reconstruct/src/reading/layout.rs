@@ -4,7 +4,7 @@ use crate::reading::words::{span, text};
 use crate::told::layout::{Counted, Layout, Standing};
 use crate::told::zones::side_of;
 use recrash_model::account::{
-    Account, Act, ActFact, Fact, LaneWord, LeftRight, Origin, Party, RoadFeature, Source, told,
+    Account, Act, ActFact, Fact, LaneWord, LeftRight, Origin, Party, RoadFeature, SignalState, Source, told,
 };
 use recrash_model::template::Movement;
 
@@ -36,6 +36,7 @@ impl Layout {
             turn_lane: has(RoadFeature::TurnLane) && goes_to_turn_lane(account, partner)
                 || goes_out_left(account, partner),
             left_to_come: goes_to_turn_left(&account.sv),
+            arrow: turns_on_arrow(&account.sv),
             rear_door: rear_door(account, partner),
         }
     }
@@ -91,13 +92,23 @@ fn standing(account: &Account, party: &Party) -> Standing {
     let double = sources(party).any(|source| text(source).contains("double"));
     let stands = |fact: &&ActFact| matches!(fact.act, Act::Hold | Act::Park) && !fact.after_contact && !fact.begun;
     let in_lane = double || party.acts.iter().rfind(stands).is_some_and(is_in_lane);
-    Standing { counted: lane, at_kerb: stands_at_kerb(account, party), in_lane }
+    let stood = |fact: &ActFact| stands(&fact) || fact.act == Act::Stop && !fact.after_contact && !fact.begun;
+    let partly = party.acts.iter().any(|fact| stood(fact) && is_partly_in_lane(fact));
+    Standing { counted: lane, at_kerb: stands_at_kerb(account, party), in_lane, partly }
 }
+
+/// "was parked partially in the lane".
+fn is_partly_in_lane(fact: &ActFact) -> bool {
+    let text = text(&fact.source);
+    text.ends_with("lane") && PARTLY.iter().any(|word| text.contains(word))
+}
+
+const PARTLY: [&str; 4] = ["partial", "partly", "partway", "halfway"];
 
 /// "parked in the travel lane", and not partly there: the reader's words of who stands in a lane end with it.
 fn is_in_lane(fact: &ActFact) -> bool {
     let text = text(&fact.source);
-    text.ends_with("lane") && !["partial", "partly"].iter().any(|word| text.contains(word))
+    text.ends_with("lane") && !PARTLY.iter().any(|word| text.contains(word))
 }
 
 /// So many bytes behind the words that somebody stands, at most, begin those for the kerb: "was stopped to the right of the AV in a curbside
@@ -127,6 +138,17 @@ fn goes_to_turn_left(party: &Party) -> bool {
     let left = |fact: &ActFact| fact.act == Act::Turn && fact.side == Some(LeftRight::Left);
     let turned = party.acts.iter().any(|fact| fact.act == Act::Turn && !fact.after_contact && !fact.begun);
     !turned && party.acts.iter().any(left)
+}
+
+/// Whether a light is told to be for a turn alone: a green arrow, or a protected turn.
+fn turns_on_arrow(party: &Party) -> bool {
+    let texts = party.acts.iter().map(|fact| &fact.source).chain(party.controls.iter().map(|fact| &fact.source));
+    let green = party
+        .controls
+        .last()
+        .is_some_and(|fact| matches!(fact.value.state, Some(SignalState::Green | SignalState::TurnedGreen)));
+    let words = |text: String| text.contains("arrow") || text.contains("protected") && !text.contains("unprotected");
+    green && texts.map(text).any(words)
 }
 
 /// So many words before "door" tell which one it is.

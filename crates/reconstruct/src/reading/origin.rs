@@ -31,6 +31,14 @@ pub(super) fn passed_beside(account: &Account, sv: &Side) -> Option<Origin> {
     Some(Origin::Beside { side: if touched > 0.0 { LeftRight::Left } else { LeftRight::Right } })
 }
 
+/// Where a partner is that is parked on a street, and comes from the opposite direction by its heading: at the left kerb, and in no lane.
+pub(super) fn at_left_kerb(origin: Origin, cp: &Side, place: PlaceKind, elsewhere: bool) -> Option<Origin> {
+    let street = matches!(place, PlaceKind::Street | PlaceKind::Intersection | PlaceKind::Other);
+    let parked = cp.state == ContactState::Parked && cp.lane.is_none_or(|lane| lane == LaneWord::Curb);
+    let there = origin == Origin::Opposite && street && parked && !elsewhere;
+    there.then_some(Origin::Parked { side: Some(LeftRight::Left) })
+}
+
 /// Whether an oncoming partner is told to have left its own side.
 pub(super) fn comes_over(origin: Origin, partner: &Party, movement: Option<Movement>) -> bool {
     let left = |act: Act| partner.acts.iter().any(|fact| fact.act == act && !fact.after_contact && !fact.begun);

@@ -64,8 +64,9 @@ pub(super) fn side(party: &Party, kind: Option<Kind>, assumed: &mut Vec<String>,
         .filter(|fact| (leaves_line(fact.act) || fact.act == Act::Enter) && !fact.after_contact)
         .filter_map(|fact| fact.side)
         .next_back();
-    // It stood where it did something after it, or held its place.
-    let last = party.acts.iter().filter(|fact| !fact.after_contact).map(|fact| fact.step).max();
+    // It stood where it did something after it, or held its place; "was coming to a stop and traveling slowly" tells one thing twice.
+    let does = |fact: &&ActFact| !fact.after_contact && fact.act != Act::Follow;
+    let last = party.acts.iter().filter(does).map(|fact| fact.step).max();
     let stood_first = state == ContactState::Moving
         && party.acts.iter().any(|fact| {
             let stands = match fact.act {

@@ -5,7 +5,7 @@ use crate::facts::keeping::ABSURD;
 use crate::facts::{held, strays};
 use crate::ground::way::Ground;
 use crate::nearby::placed;
-use crate::search::reconstruction::Reconstruction;
+use crate::search::reconstruction::{Reconstruction, is_deed_left_open};
 use crate::told::crash::Told;
 use crate::told::others::Extra;
 use crate::touch::staging::Staging;
@@ -104,7 +104,7 @@ impl Search {
         let off = strays::off_its_way(told, &scenario, &rollout);
         // From beside the road it may show them by another way than along the ego's.
         let along = told.comes_along_lanes();
-        let unseen = verdict.checks.iter().filter(|check| along && is_of_acts(check)).count();
+        let unseen = verdict.checks.iter().filter(|check| along && is_deed_left_open(check)).count();
         let shows = (verdict.failures().count(), others, strays, unseen);
         let cost = (shows.0, shows.1, shows.2, shows.3, off + ZONE_STEP * staging.cost.0 as usize);
         let missing = verdict.checks.iter().filter(|check| is_of_others(check)).count();

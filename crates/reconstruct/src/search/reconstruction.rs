@@ -26,9 +26,13 @@ impl Reconstruction {
     /// The first told fact without which this is not the crash: one that is shown otherwise, or something that the two are told to have
     /// done and that is not to be seen. Nothing where the crash is told; others, or why the ego stood, may still not be drawn.
     pub fn missed(&self) -> Option<&Check> {
-        use CheckKind::{CpActs, CpMovement, PassedOn, SvActs, SvMovement};
-        let is_deed = |kind| matches!(kind, SvMovement | CpMovement | SvActs | CpActs | PassedOn);
-        let open = |check: &Check| check.result == CheckResult::CannotBeShown && is_deed(check.kind);
-        self.verdict.failures().next().or_else(|| self.verdict.checks.iter().find(|check| open(check)))
+        self.verdict.failures().next().or_else(|| self.verdict.checks.iter().find(|check| is_deed_left_open(check)))
     }
+}
+
+/// Whether something that the two are told to have done is not to be seen.
+pub(super) fn is_deed_left_open(check: &Check) -> bool {
+    use CheckKind::{CpActs, CpMovement, PassedOn, SvActs, SvMovement};
+    let is_deed = matches!(check.kind, SvMovement | CpMovement | SvActs | CpActs | PassedOn);
+    is_deed && check.result == CheckResult::CannotBeShown
 }

@@ -5,7 +5,7 @@ use crate::search::best::{Found, acts_left_open, is_of_acts, left_open, searched
 use crate::search::reconstruction::Reconstruction;
 use crate::told::crash::Told;
 use recrash_model::account::{Account, Untold};
-use recrash_model::metrics::{CheckKind, Verdict};
+use recrash_model::metrics::{Check, CheckKind, Verdict};
 use recrash_roads::check;
 
 /// So many are run in all.
@@ -44,24 +44,32 @@ fn held_again(found: Found, asked: &Told) -> Found {
 /// The same, of which one is taken at another time that shows more of what the two did, and no less else.
 fn in_order(told: Told, account: &Account, most_runs: usize) -> Result<Found, Untold> {
     let (told, mut best) = near_or_far(told, account, most_runs)?;
-    if !best.made.is_true() {
+    if !is_true_but_for_signals(&best.made) {
         return Ok(best);
     }
     for (told, helps) in told.in_other_times() {
         let open = [CheckKind::SvActs, CheckKind::CpActs]
             .map(|kind| best.made.verdict.checks.iter().any(|check| check.kind == kind && is_of_acts(check)));
-        if !(open[0] && helps[0] || open[1] && helps[1]) {
+        let late = !best.made.is_true();
+        if !(late || open[0] && helps[0] || open[1] && helps[1]) {
             continue;
         }
         let other = searched(told, account, AGAIN_RUNS)
             .ok()
-            .filter(|other| other.made.is_true() && other.strays <= best.strays);
+            .filter(|other| other.made.is_true() && (late || other.strays <= best.strays));
         let open = |found: &Found| (acts_left_open(&found.made), left_open(&found.made));
-        if let Some(other) = other.filter(|other| open(other).0 < open(&best).0 && open(other).1 <= open(&best).1) {
+        let better = |other: &Found| open(other).0 < open(&best).0 && open(other).1 <= open(&best).1;
+        if let Some(other) = other.filter(|other| late || better(other)) {
             best = other;
         }
     }
     Ok(best)
+}
+
+/// Whether no told fact but a light is shown otherwise: that may have had no time to change.
+fn is_true_but_for_signals(made: &Reconstruction) -> bool {
+    let is_signal = |check: &Check| matches!(check.kind, CheckKind::SvControl | CheckKind::CpControl);
+    made.verdict.failures().all(is_signal)
 }
 
 /// Who was behind the ego in a queue stands close to it; farther off where nothing true is found with that.

@@ -72,7 +72,10 @@ impl Told {
             Movement::CrossingIntoOpposingLane => (0.0, -LANE_M),
             Movement::LaneDeparture => (0.0, by(right, DEPARTS_M)),
             // From the kerb, or the one told.
-            Movement::EnteringTraffic => (if self.sv.aside == Some(right) { -KERB_M } else { KERB_M }, 0.0),
+            Movement::EnteringTraffic => {
+                let from_left = self.sv.aside == Some(right) || self.leaves_left_kerb();
+                (if from_left { -KERB_M } else { KERB_M }, 0.0)
+            }
             Movement::ParkingManeuver => (0.0, by(right, KERB_M)),
             // It changed lanes on its way.
             Movement::Straight if self.sv.changed_lanes && self.sv.aside.is_some() => (0.0, by(left, LANE_M)),

@@ -4,10 +4,12 @@ use crate::told::choices::Choices;
 use crate::told::layout::{Counted, Layout};
 use crate::told::lies::Lies;
 use crate::told::others::{Extra, Thrower};
+use crate::told::phase::Phase;
 use crate::told::rig::Rig;
-use crate::told::side::Side;
+use crate::told::side::{Side, Turning};
 use recrash_model::account::{
-    ContactState, ControlDevice, CrashType, EarlierTouch, Kind, LeftRight, Origin, PlaceKind, StandReason, Striker,
+    ContactState, Control, ControlDevice, CrashType, EarlierTouch, Kind, LeftRight, Obeyed, Origin, PlaceKind,
+    SignalState, StandReason, Striker,
 };
 use recrash_model::metrics::CheckKind;
 use recrash_model::narrative::FirstMover;
@@ -175,6 +177,16 @@ impl Told {
     fn touched_on_its_way(&self) -> bool {
         let touch = self.touch.filter(|_| matches!(self.thrower, Some(Thrower::Beside(_))));
         touch.is_some_and(|touch| touch.by_partner && touch.of_partner.is_some_and(|zone| !zone.is_rear()))
+    }
+
+    /// Whether an ego that stood at a red light is told to have come over its line without running it: to turn right, or by a little, to stand
+    /// again.
+    pub(crate) fn keeps_red(&self) -> bool {
+        let red = |said: Control| said.state == Some(SignalState::Red) && said.obeyed != Some(Obeyed::No);
+        let moved_up = self.sv.phases.ends_with(&[Phase::Stands, Phase::Drives, Phase::Stands]);
+        let creeps = self.sv.enters() && moved_up && self.sv.turning == Turning::No;
+        let turns = self.sv.turning == Turning::Right && !self.sv.turns_later;
+        self.sv.control.is_some_and(red) && (turns || creeps)
     }
 
     /// Which lane of its road one of the two is told to be in, counted from a side.

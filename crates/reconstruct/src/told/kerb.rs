@@ -13,7 +13,14 @@ impl Told {
         let stands = self.thing.is_some() && self.cp.state.stands();
         let parked = self.sv.state == ContactState::Parked || self.sv.came_to_park;
         let street = matches!(self.place, PlaceKind::Street | PlaceKind::Intersection | PlaceKind::Other);
-        street && (parked || self.stops_at_kerb()) && !stands && !self.is_in_lane(true)
+        let there = (parked || self.stops_at_kerb()) && !self.is_in_lane(true);
+        street && (there || self.is_partly_in_lane()) && !stands
+    }
+
+    /// Whether the ego stands partly in the lane beside which it would be parked.
+    pub(crate) fn is_partly_in_lane(&self) -> bool {
+        let steps = self.sv.phases.first().is_none_or(|phase| *phase == Phase::Stands);
+        self.layout.sv.partly && self.sv.state.stands() && steps && self.sv.turning == Turning::No
     }
 
     /// Whether one of the two is told to stand in a driving lane: by a word for the lane, double-parked, or passed by who takes the opposite
@@ -32,7 +39,8 @@ impl Told {
         let (side, told) = if of_ego { (&self.sv, self.layout.sv) } else { (&self.cp, self.layout.cp) };
         let street = matches!(self.place, PlaceKind::Street | PlaceKind::Intersection | PlaceKind::Other);
         let parked = side.state == ContactState::Parked || side.came_to_park || side.state.stands() && told.at_kerb;
-        street && parked && !self.is_in_lane(of_ego) && (of_ego || self.thing.is_none())
+        let partly = of_ego && self.is_partly_in_lane();
+        street && parked && !partly && !self.is_in_lane(of_ego) && (of_ego || self.thing.is_none())
     }
 
     /// Whether a parked partner's door touches that is on the ego's side only where the partner faces the other way.
@@ -62,6 +70,19 @@ impl Told {
         let moves =
             self.sv.state == ContactState::SettingOff || self.sv.state == ContactState::Moving && self.sv.stood_first;
         self.layout.sv.at_kerb && moves && leaves && left
+    }
+
+    /// Whether an ego that pulls out meets one that is parked ahead of it with a left corner alone: nobody tells from which kerb it came, and that is
+    /// so at the left one, of a one-way street.
+    pub(crate) fn leaves_left_kerb(&self) -> bool {
+        let pulls_out = self.sv.movement == Some(Movement::EnteringTraffic) && self.sv.aside.is_none();
+        let ahead = self.origin == Origin::Ahead && self.cp.state == ContactState::Parked && self.stands_beside(false);
+        let street = self.place == PlaceKind::Street && self.sv.turning == Turning::No;
+        pulls_out
+            && ahead
+            && street
+            && self.sv.zones.iter().all(|zone| zone.is_front())
+            && side_of(&self.sv.zones) == Some(1.0)
     }
 
     /// Whether an ego that stood at the kerb set off straight on, and touches one that stands there ahead of it: both are beside the lanes.

@@ -36,6 +36,8 @@ pub(crate) struct Standing {
     pub(crate) at_kerb: bool,
     /// It is parked in a lane: "double parked", "parked in-lane".
     pub(crate) in_lane: bool,
+    /// It stands partly in the lane, and beside it: "was stopped partially in-lane".
+    pub(crate) partly: bool,
 }
 
 /// What is told so.
@@ -54,6 +56,8 @@ pub(crate) struct Layout {
     pub(crate) right_lane: bool,
     /// The ego goes to turn left, and has not begun to.
     pub(crate) left_to_come: bool,
+    /// The ego's green light is told to be for its turn alone.
+    pub(crate) arrow: bool,
     /// The door that took part is told to be a rear one, or a front one.
     pub(crate) rear_door: Option<bool>,
 }

@@ -108,7 +108,8 @@ impl Told {
         let crosses = matches!(self.origin, Origin::Cross { .. });
         let usual = |side: &Side| match side.state {
             ContactState::Stopped | ContactState::Parked => 0.0,
-            ContactState::SettingOff if side.control.is_some() && crosses => 4.0,
+            // It has come from its line.
+            ContactState::SettingOff if (side.control.is_some() || side.enters()) && crosses => 4.0,
             ContactState::SettingOff => 1.5,
             ContactState::Reversing => 1.2,
             ContactState::Moving if side.kind == PartnerKind::Pedestrian => WALKS_MPS,

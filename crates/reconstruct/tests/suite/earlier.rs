@@ -100,9 +100,10 @@ fn the_nearest_of_a_queue_is_of_the_kind_that_is_told_of_it() {
 }
 
 #[test]
-fn pavement_that_is_scraped_is_no_kerb() {
+fn pavement_that_is_scraped_is_raised_and_no_hole() {
     let kind = |text: &str| made(&story(text)).draft.objects[0].kind;
-    assert_eq!(kind(PAVEMENT), ObstacleKind::Pothole);
+    assert_eq!(kind(PAVEMENT), ObstacleKind::Kerb);
+    assert_eq!(kind(&PAVEMENT.replace("the pavement", "a hole in the pavement")), ObstacleKind::Pothole);
     assert_eq!(kind(&PAVEMENT.replace("the pavement", "a speed bump")), ObstacleKind::Kerb);
 }
 

@@ -118,3 +118,53 @@ fn an_animal_for_which_the_ego_stands_is_before_it_yet() {
     let last = before_contact(&shown);
     assert!((animal.states[last].y - ego.states[last].y).abs() < 4.0, "{:?}", animal.states[last]);
 }
+
+const AT_YELLOW: &str = "The AV was stopped at the intersection of Elm Street and Oak Street facing a green light. When the light turned yellow, a sedan that \
+                         had been stopped behind the AV passed the AV on the left, and the right side of the sedan made contact with the rear \
+                         left of the stationary AV.";
+const RIGHT_ON_RED: &str = "The AV was traveling north on Elm Street and came to a stop at a red light at the intersection with Oak Street. The AV began to \
+                            turn right onto Oak Street and came to a stop. A van approached from behind and the front of the van made contact with the \
+                            rear of the stationary AV.";
+const CREPT_IN: &str = "The AV was traveling north on Elm Street and came to a stop at a red light at the intersection with Oak Street. The AV entered the \
+                        intersection and came to a stop. A van approached from behind and the front of the van made contact with the rear of the \
+                        stationary AV.";
+
+#[test]
+fn who_waits_and_sets_off_at_yellow_does_so_when_it_is_yellow() {
+    let shown = made(&told(AT_YELLOW));
+    let states = crate::ways::partner(&shown).0;
+    let goes_s = 0.1 * states.iter().rposition(|state| state.speed() < 0.1).expect("it stands") as f64;
+    assert_eq!(shows(&shown, goes_s), Some(Aspect::Yellow), "{goes_s}");
+    assert_eq!(shows(&shown, 0.1 * before_contact(&shown) as f64), Some(Aspect::Yellow));
+}
+
+#[test]
+fn who_stood_at_red_may_turn_right_or_creep_over_its_line_at_red() {
+    for text in [RIGHT_ON_RED, CREPT_IN] {
+        let shown = made(&told(text));
+        assert!(shown.missed().is_none(), "{:?}", shown.missed());
+        assert_eq!(shows(&shown, 0.1 * before_contact(&shown) as f64), Some(Aspect::Red), "{text}");
+        assert!(fact(&shown, CheckKind::SvControl).observed.contains("crossed"), "{text}");
+    }
+    // Who turns left does so at green.
+    let left = made(&told(&RIGHT_ON_RED.replace("turn right", "turn left")));
+    assert_eq!(shows(&left, 0.1 * before_contact(&left) as f64), Some(Aspect::Green));
+}
+
+#[test]
+fn who_turns_left_on_an_arrow_has_red_ahead_of_it() {
+    let text = "The AV was traveling south on Elm Street and was making a left turn onto Oak Street on a green arrow. A sedan traveling north on Elm Street entered the \
+                intersection and the front of the sedan made contact with the front right of the AV.";
+    let ahead = |text: &str| {
+        let shown = made(&told(text));
+        let at_s = 0.1 * before_contact(&shown) as f64;
+        shown
+            .draft
+            .control
+            .iter()
+            .find(|control| control.at == "ahead-")
+            .and_then(|control| control.device.aspect(at_s))
+    };
+    assert_eq!(ahead(text), Some(Aspect::Red));
+    assert_eq!(ahead(&text.replace("green arrow", "green light")), Some(Aspect::Green));
+}

@@ -198,3 +198,32 @@ fn who_sets_off_at_the_kerb_into_one_that_is_parked_ahead_was_beside_the_lanes()
     ));
     assert!(made.rollout.ego_track().states[0].y < -1.5, "{:?}", made.rollout.ego_track().states[0]);
 }
+
+#[test]
+fn who_passes_an_ego_that_has_yet_to_turn_comes_by_beside_it() {
+    let mut account = story(
+        "The AV was traveling north in the right lane of Elm Street and was slowing. A sedan passed the AV on the left and the front right of \
+         the sedan made contact with the front left of the AV.",
+    );
+    account.sv.movement = Some(Fact::of_column(Movement::RightTurn, "SV Pre-Crash Movement"));
+    let made = made(&account);
+    assert!(made.missed().is_none(), "{:?}", made.missed());
+    let movement = made.verdict.checks.iter().find(|check| check.kind == CheckKind::SvMovement);
+    assert_eq!(movement.map(|check| check.expected.as_str()), Some("right turn, yet to begin"));
+}
+
+#[test]
+fn who_comes_from_the_side_of_an_ego_that_drove_on_after_its_turn_does_so_from_that_side() {
+    let mut account = story(
+        "The AV was traveling on Elm Street, completed a right turn onto Oak Street and proceeded straight through the intersection with Main Street. \
+         A scooter traveling on Main Street came from the right and the front of the scooter made contact with the right side of the AV.",
+    );
+    account.sv.movement = Some(Fact::by_rule(Movement::Straight, "made for this test"));
+    account.came_from =
+        Some(Fact::by_rule(recrash_model::account::Origin::Cross { side: LeftRight::Right }, "made for this test"));
+    let made = made(&account);
+    let (states, met) = partner(&made);
+    let ego = made.rollout.ego_track().states[before_contact(&made)];
+    let right = recrash_model::geometry::Vec2::from_heading(ego.heading).left() * -1.0;
+    assert!(right.dot(states[0].position() - met.position()) > 5.0, "{:?}", states[0]);
+}

@@ -89,3 +89,29 @@ fn who_is_ahead_of_an_ego_at_the_kerb_stands_in_the_lane_and_the_light_turns_gre
 fn a_pavement_that_is_scraped_on_a_hill_is_no_kerb() {
     assert_eq!(reconstruct(&story(ON_A_HILL)).unwrap_err(), Untold::Place);
 }
+
+const SCRAPED_OPPOSITE: &str = "The AV was traveling north on Elm Street and the front left of the AV made contact with the rear left of a sedan that was parked \
+                                facing south on Elm Street.";
+
+const LEFT_KERB: &str = "The AV was pulling out of a parking spot on Elm Street when the front left of the AV made contact with the rear of a sedan that was \
+                         parked ahead of the AV.";
+
+#[test]
+fn one_that_is_parked_against_the_egos_way_stands_at_the_left_kerb() {
+    let mut account = story(SCRAPED_OPPOSITE);
+    account.came_from =
+        Some(recrash_model::account::Fact::by_rule(recrash_model::account::Origin::Opposite, "made for this test"));
+    let shown = made(&account);
+    let (states, met) = partner(&shown);
+    assert!(met.y > shown.rollout.ego_track().states[0].y + 2.0 && states[0].speed() == 0.0, "{met:?}");
+}
+
+#[test]
+fn who_pulls_out_and_meets_one_with_its_left_corner_left_the_left_kerb() {
+    let shown = made(&story(LEFT_KERB));
+    let ego = &shown.rollout.ego_track().states;
+    assert!(ego[before_contact(&shown)].y < ego[0].y - 0.2, "{:?}", ego[0]);
+    let right = made(&story(&LEFT_KERB.replace("front left", "front right")));
+    let ego = &right.rollout.ego_track().states;
+    assert!(ego[before_contact(&right)].y > ego[0].y + 0.2, "{:?}", ego[0]);
+}

@@ -161,3 +161,62 @@ fn a_slow_ego_that_stood_before_its_turn_stands_before_the_junction() {
     let stood = ego.iter().position(|state| state.speed() == 0.0).expect("it stands");
     assert!(degrees_between(ego[stood].heading, ego[0].heading) < 5.0, "before its turn");
 }
+
+const ROLLED: &str = "The AV was traveling north on Elm Street and was coming to a stop. A van approached from behind and the front of the van made \
+                      contact with the rear of the AV.";
+
+const BOTH_SET_OFF: &str = "The AV was stopped at the intersection of Elm Street and Oak Street. A sedan traveling west on Oak Street was stopped \
+                            there too. The AV set off and entered the intersection, the sedan set off and entered the intersection, and the front of the \
+                            sedan made contact with the front right of the AV.";
+
+const BACKED_INTO: &str = "The AV was traveling north on Elm Street and came to a stop. A van stopped behind the AV. The AV then reversed and the rear of \
+                           the AV made contact with the front of the van.";
+
+const SLOWLY_OUT: &str = "The AV was stopped in a parking lot. A sedan in the parking stall to the right of the AV reversed out of the stall and the rear of the \
+                          sedan made contact with the right side of the AV.";
+
+#[test]
+fn who_was_coming_to_a_stop_and_travelled_slowly_did_not_stand_first() {
+    let mut account = story(ROLLED);
+    (account.sv.state, account.sv.standing) = (Some(Fact::by_rule(ContactState::Moving, "made for this test")), None);
+    account.sv.movement = Some(Fact::by_rule(recrash_model::template::Movement::Straight, "made for this test"));
+    let last = account.sv.acts.last().expect("it was stopping").clone();
+    account.sv.acts.push(recrash_model::account::ActFact {
+        act: Act::Follow,
+        step: last.step + 1,
+        begun: false,
+        ..last
+    });
+    let shown = made(&account);
+    let speeds = speeds(&shown);
+    assert!(speeds.iter().all(|mps| *mps > 0.2), "{speeds:?}");
+    assert!(speeds[0] > speeds[speeds.len() - 1] + 0.8, "it slows");
+}
+
+#[test]
+fn who_sets_off_and_comes_into_the_junction_does_so_from_before_it() {
+    let account = story(BOTH_SET_OFF);
+    let shown = made(&account);
+    let acts = shown.verdict.checks.iter().find(|check| check.kind == CheckKind::SvActs).expect("it is told");
+    assert_eq!(acts.result, CheckResult::Shown, "{acts:?}");
+}
+
+#[test]
+fn who_stopped_behind_an_ego_that_backs_came_along_behind_it() {
+    let shown = made(&story(BACKED_INTO));
+    let (van, ego) = (partner(&shown).0, &shown.rollout.ego_track().states);
+    assert!(van.iter().zip(ego).all(|(van, ego)| van.x < ego.x - 3.0), "{:?}", van[0]);
+    assert!(van[0].speed() > 1.0 && van[van.len() - 1].speed() == 0.0);
+}
+
+#[test]
+fn an_ego_that_stood_from_the_start_stands_before_a_very_slow_one_backs() {
+    let mut account = story(SLOWLY_OUT);
+    let slow = recrash_model::account::Speed { mps: 0.45, meaning: recrash_model::account::SpeedMeaning::Impact };
+    account.partner.as_mut().expect("a partner").speeds = vec![Fact::of_column(slow, "CP Precrash Speed (MPH)")];
+    let hold = recrash_model::account::Standing::FromTheStart;
+    account.sv.standing = Some(Fact::by_rule(hold, "made for this test"));
+    let shown = made(&account);
+    let moves = partner(&shown).0.iter().position(|state| state.speed() != 0.0).expect("it backs");
+    assert!(speeds(&shown)[moves] < 0.1, "it stands by then: {:?}", speeds(&shown));
+}

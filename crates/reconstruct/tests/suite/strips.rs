@@ -151,3 +151,28 @@ fn a_lane_for_left_turns_lies_beside_the_left_lane_and_leads_the_same_way() {
     without.place.features.retain(|fact| fact.value != RoadFeature::TurnLane);
     assert_eq!(moved(&without, &made, 0.0, CheckKind::SvLane), Some(CheckResult::NotShown));
 }
+
+#[test]
+fn a_lane_of_the_crossing_road_is_none_of_a_narrow_street() {
+    let account = story(
+        "The AV was stopped facing north on a narrow section of Elm Street for a red light at the intersection with Oak Street. A pickup truck traveling east in \
+         the right lane of Oak Street turned right onto Elm Street, and the left side of the pickup truck made contact with the left side of the AV.",
+    );
+    assert!(account.place.features.iter().any(|fact| fact.value == RoadFeature::NarrowStreet));
+    let shown = made(&account);
+    let MapSpec::G(map) = &shown.draft.map else { panic!("a graph") };
+    assert_eq!(map.roads[0].left.iter().filter(|strip| strip.kind == StripKind::Driving).count(), 1);
+}
+
+#[test]
+fn who_is_parked_partly_in_the_lane_stands_on_its_edge() {
+    let text = "The AV was parked partially in-lane at the curb facing north on Elm Street. A sedan traveling north passed the AV on the left and the right side of the \
+                sedan made contact with the rear left of the stationary AV.";
+    let beside_m = |text: &str| {
+        let shown = made(&story(text));
+        let (states, _) = partner(&shown);
+        states[0].y - shown.rollout.ego_track().states[0].y
+    };
+    let (partly, wholly) = (beside_m(text), beside_m(&text.replace("partially in-lane at", "at")));
+    assert!((0.8..2.0).contains(&partly) && wholly > partly + 1.0, "{partly} m, {wholly} m");
+}

@@ -138,7 +138,7 @@ fn a_tool_is_small() {
 fn a_raised_pavement_lies_across_the_entry() {
     let shown = made(&story(EDGE));
     let (object, x_m, y_m) = thing(&shown);
-    assert!(object.kind == ObstacleKind::Pothole && object.size.is_some_and(|size| size.width_m > 3.0), "{object:?}");
+    assert!(object.kind == ObstacleKind::Kerb && object.size.is_some_and(|size| size.width_m > 3.0), "{object:?}");
     // The arm to the left begins 13 m from the junction's centre, which is 5.1 m to the left of the ego's line.
     assert!((17.0..20.0).contains(&y_m) && x_m.abs() < 5.0, "{object:?}");
     let ego = shown.rollout.ego_track().states[before_contact(&shown)];
