@@ -391,6 +391,7 @@ fn act_of(reading: &Reading<'_>, number: usize, frame: &Frame, pushed: bool) -> 
         Act::LaneChange if frame.form == Form::Ing && moved_in_sentence(reading, number) == Some(Act::Reverse) => {
             Act::Drift
         }
+        Act::Enter | Act::Follow if enters_illegally(reading, frame) => Act::RunRed,
         // "A dog came out from between two cars": no vehicle that leaves a place of its own.
         Act::PullOut if frame.who.is_some_and(|who| is_animal(reading, who)) => Act::Enter,
         Act::Enter if enters_a_lane(reading, number, frame) => Act::LaneChange,
@@ -559,6 +560,23 @@ fn yields_in_motion(reading: &Reading<'_>, number: usize, frame: &Frame) -> bool
         && reading.story.tokens[frame.first - 1].text == "was";
     let drives = (last.is_some() || was) && !slows(last) && last != Some(Act::Reverse);
     to.is_some() && !told && drives && !slow && !reading.is_after(number)
+}
+
+/// "had a green arrow. A van illegally entered the junction": where a light is told of, against that.
+fn enters_illegally(reading: &Reading<'_>, frame: &Frame) -> bool {
+    let tokens = &reading.story.tokens;
+    let illegal = |token: &Token| matches!(token.text.as_str(), "illegally" | "unlawfully");
+    let near = frame.first.saturating_sub(1)..tokens.len().min(frame.end + 2);
+    let end = reading.story.sentences[frame.sentence].end;
+    let place = |token: &Token| matches!(token.text.as_str(), "intersection" | "junction");
+    let light = |pair: &[Token]| {
+        matches!(pair[0].text.as_str(), "green" | "red" | "traffic")
+            && matches!(pair[1].text.as_str(), "light" | "signal" | "arrow")
+    };
+    frame.who != Some(SUBJECT)
+        && tokens[near].iter().any(illegal)
+        && tokens[frame.first..end].iter().any(place)
+        && tokens[..reading.until().min(tokens.len())].windows(2).any(light)
 }
 
 fn is_animal(reading: &Reading<'_>, actor: Actor) -> bool {

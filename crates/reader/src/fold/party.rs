@@ -32,6 +32,7 @@ pub(crate) fn party(reading: &Reading<'_>, actor: Actor) -> Party {
         (Some(kind), None) => Some(Fact::of_column(kind, "Make")),
         _ => None,
     };
+    let via = known.heading.and_then(|(_, _, end)| by_way_of(reading, end));
     let mut party = Party {
         kind,
         movement: None,
@@ -39,12 +40,15 @@ pub(crate) fn party(reading: &Reading<'_>, actor: Actor) -> Party {
         standing,
         reasons: Vec::new(),
         acts: acts(reading, actor),
-        heading: known
-            .heading
+        heading: via
+            .map(|(way, _)| way)
+            .or(known.heading)
             .filter(|(_, first, _)| before(*first))
             .map(|(compass, first, end)| reading.told(compass, first, end))
             .or_else(|| across_from(reading, actor)),
-        heading_after: after(reading, actor),
+        heading_after: via
+            .map(|(_, (compass, first, end))| reading.told(compass, first, end))
+            .or_else(|| after(reading, actor)),
         lane: known
             .lane
             .filter(|(_, first, _)| before(*first))
@@ -126,6 +130,30 @@ fn after(reading: &Reading<'_>, actor: Actor) -> Option<Fact<Compass>> {
         .find(|(_, frame)| frame.onto && frame.heading.is_some() && frame.happened() && frame.act().is_some())?;
     frame.heading.map(|(compass, first, end)| reading.told(compass, first, end))
 }
+
+/// "from southbound Elm Street to southbound Oak Street via eastbound Pine Street", behind the first of them: the way on which it came last, and
+/// that on which it was to go.
+fn by_way_of(reading: &Reading<'_>, end: usize) -> Option<(Way, Way)> {
+    let story = &reading.story;
+    let word = |at: usize| story.tokens.get(at).map_or("", |token| token.text.as_str());
+    let compass = |at: usize| {
+        let compass = match word(at).strip_suffix("bound")? {
+            "north" => Compass::North,
+            "east" => Compass::East,
+            "south" => Compass::South,
+            "west" => Compass::West,
+            _ => return None,
+        };
+        Some((compass, at, at + 1))
+    };
+    let sentence = story.sentences.iter().find(|sentence| (sentence.first..sentence.end).contains(&end))?;
+    let via = (end..sentence.end).find(|&at| word(at) == "via")?;
+    let to = (end..via).find(|&at| matches!(word(at), "to" | "onto"))?;
+    Some((compass(via + 1)?, compass(to + 1)?))
+}
+
+/// A direction, with its tokens.
+type Way = (Compass, usize, usize);
 
 /// "left a lot on the west side of the street and crossed it": east.
 fn across_from(reading: &Reading<'_>, actor: Actor) -> Option<Fact<Compass>> {
