@@ -65,6 +65,11 @@ enum Lead {
     Whole(Noun, usize),
 }
 
+/// "a stopped van", "a parked van".
+fn stands(adjective: &Adjective) -> bool {
+    matches!(adjective, Adjective::Stopped | Adjective::Parked)
+}
+
 impl Chunker<'_> {
     /// Somebody or something that is named here.
     pub(super) fn noun(&self, first: usize) -> Option<(Noun, usize)> {
@@ -121,8 +126,12 @@ impl Chunker<'_> {
         {
             return None;
         }
-        if noun.article == Article::None && noun.kind.is_some() && !noun.several && self.shares_article(first) {
-            noun.article = Article::Definite;
+        if noun.article == Article::None
+            && let Some(kind) = noun.kind.filter(|_| !noun.several)
+            && let Some(before) = self.shares_with(first, kind)
+        {
+            noun.article = before.article;
+            noun.adjectives.extend(before.adjectives.into_iter().filter(stands));
         }
         if one_of {
             (noun.one_of, noun.several) = (noun.several, false);
@@ -131,14 +140,16 @@ impl Chunker<'_> {
         Some((noun, length))
     }
 
-    /// "the van and motorcycle": the article of the first is that of the second.
-    fn shares_article(&self, first: usize) -> bool {
-        let Some(and) = first.checked_sub(1).filter(|and| *and > self.first && self.text(*and) == "and") else {
-            return false;
-        };
-        let begins = (self.first.max(and.saturating_sub(LONGEST_LEAD))..and).rev().find(|at| self.text(*at) == "the");
-        let known = begins.and_then(|at| self.noun(at).filter(|(_, length)| at + length == and));
-        known.is_some_and(|(noun, _)| !noun.several)
+    /// "the van and motorcycle", "a stopped van and bus": the noun before, whose article is that of the second too, and that it stands.
+    fn shares_with(&self, first: usize, kind: Kind) -> Option<Noun> {
+        let and = first.checked_sub(1).filter(|and| *and > self.first && self.text(*and) == "and")?;
+        let mut lead = (self.first.max(and.saturating_sub(LONGEST_LEAD))..and).rev();
+        let begins = lead.find(|at| matches!(self.text(*at), "the" | "a" | "an"))?;
+        let (before, length) = self.noun(begins)?;
+        let stand =
+            kind.is_vehicle() && before.kind.is_some_and(Kind::is_vehicle) && before.adjectives.iter().any(stands);
+        let shares = before.article == Article::Definite || stand;
+        (shares && begins + length == and && !before.several).then_some(before)
     }
 
     /// "a group of", "the pair of".

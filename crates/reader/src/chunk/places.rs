@@ -17,9 +17,10 @@ const LEFT: &[&str] = &["left", "leftmost", "inside", "fast", "inner", "innermos
 const RIGHT: &[&str] = &["right", "rightmost", "outside", "slow", "outer", "outermost"];
 const BUS: &[&str] = &["bus", "transit"];
 const TURN: &[&str] = &["turn", "turning"];
+const MIDDLE: &[&str] = &["center", "middle", "centre"];
 
 /// What the words before "lane" make of it: the first whose words are all there.
-const LANES: [(&[&[&str]], LaneWord); 16] = [
+const LANES: [(&[&[&str]], LaneWord); 18] = [
     (&[&["bike", "bicycle", "cycle"]], LaneWord::Bike),
     // "the rightmost bus and turn lane": who else may use it says where it is.
     (&[BUS, TURN, LEFT], LaneWord::LeftTurn),
@@ -36,9 +37,12 @@ const LANES: [(&[&[&str]], LaneWord); 16] = [
     (&[TURN, &["leftmost"], &["right"]], LaneWord::RightTurn),
     (&[TURN, LEFT], LaneWord::LeftTurn),
     (&[TURN, RIGHT], LaneWord::RightTurn),
+    // "the right-middle lane": of two in the middle.
+    (&[MIDDLE, &["left"]], LaneWord::Center),
+    (&[MIDDLE, &["right"]], LaneWord::Center),
     (&[LEFT], LaneWord::Left),
     (&[RIGHT], LaneWord::Right),
-    (&[&["center", "middle", "centre"]], LaneWord::Center),
+    (&[MIDDLE], LaneWord::Center),
 ];
 
 /// Words that stand before "lane" in its name.
@@ -402,8 +406,10 @@ impl Chunker<'_> {
             return (many > 2)
                 .then_some((LaneWord::Center, (at..at + 6).find(|&at| self.text(at) == "lanes")? + 1 - at));
         }
-        let words: Vec<&str> = (at + 1..at + 6).map(|at| self.text(at)).collect();
-        let length = match words.as_slice() {
+        // "the second from the right westbound lane".
+        let named: Vec<usize> = (at + 1..at + 7).filter(|&at| !self.text(at).ends_with("bound")).take(5).collect();
+        let words: Vec<&str> = named.iter().map(|&at| self.text(at)).collect();
+        let count = match words.as_slice() {
             ["lane", "from", "the", "left" | "right" | "leftmost" | "rightmost", ..]
             | ["from", "the", "left" | "right" | "leftmost" | "rightmost", "lane", ..]
             | ["to", "the", "left" | "right", "lane", ..] => 5,
@@ -413,7 +419,7 @@ impl Chunker<'_> {
             ["leftmost" | "rightmost", "lane", ..] => 3,
             _ => return None,
         };
-        Some((LaneWord::Center, length))
+        Some((LaneWord::Center, named[count - 2] + 1 - at))
     }
 
     /// "the second from the right designated right turn lane": a lane for turns all the same.

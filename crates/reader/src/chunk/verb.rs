@@ -635,9 +635,24 @@ impl Chunker<'_> {
             | "must" | "did" | "t" | "fully" | "suddenly" | "immediately" | "abruptly" | "slowly" | "also" | "then"
             | "safely" | "almost" | "nearly" => true,
             "and" | "or" => {
-                before.iter().rev().skip(1).take(4).any(|placed| matches!(placed.chunk, Chunk::Verb(_, Form::Base)))
+                // "began to speed up and turn right": the verb before it ends in one.
+                let infinitive = |placed: &Placed| self.ends_in_infinitive(placed) && !self.has_verb_behind(at);
+                before.iter().rev().skip(1).take(4).any(|placed| {
+                    matches!(placed.chunk, Chunk::Verb(_, Form::Base)) || word == "and" && infinitive(placed)
+                })
             }
             _ => false,
         }
+    }
+
+    /// "began to accelerate", "started to move forward".
+    fn ends_in_infinitive(&self, placed: &Placed) -> bool {
+        matches!(placed.chunk, Chunk::Verb(..))
+            && (placed.first + 1..placed.end.saturating_sub(1)).any(|at| self.text(at) == "to")
+    }
+
+    /// "and contact was made": a noun, with its own verb behind it.
+    fn has_verb_behind(&self, at: usize) -> bool {
+        (at + 1..at + 3).any(|at| matches!(self.text(at), "was" | "were" | "is" | "occurred" | "between" | "with"))
     }
 }

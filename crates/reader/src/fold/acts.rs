@@ -35,7 +35,8 @@ pub(super) fn acts(reading: &Reading<'_>, actor: Actor) -> Vec<ActFact> {
             let turn = all.iter_mut().rfind(|fact| fact.act == Act::Turn && !fact.after_contact);
             turn.into_iter().for_each(|turn| (turn.begun, turn.done) = (false, true));
         }
-        let Some(act) = act_of(reading, number, frame, pushed) else { continue };
+        let so_far = all.last().map(|fact| fact.act);
+        let Some(act) = act_of(reading, number, frame, pushed, so_far) else { continue };
         let last = at_crash.filter(|_| flashback::is_state_at_crash(reading, number) && actor == SUBJECT);
         if last.is_some() && all.iter().rfind(|fact| !fact.after_contact).is_some_and(stands) {
             continue;
@@ -81,7 +82,9 @@ pub(super) fn acts(reading: &Reading<'_>, actor: Actor) -> Vec<ActFact> {
             _ if in_passing => {}
             // "stopped after making a left turn": it turned first.
             Some(last)
-                if (stands(last) || last.act == Act::Follow) && is_behind_after(reading, frame, last.step as usize)
+                if stands(last) && tells_where(reading, frame)
+                    || (stands(last) || last.act == Act::Follow)
+                        && is_behind_after(reading, frame, last.step as usize)
                     || enters_as_it_stops(reading, &fact, frame, last) =>
             {
                 let step = std::mem::replace(&mut last.step, fact.step);
@@ -315,6 +318,13 @@ fn is_behind_after(reading: &Reading<'_>, frame: &Frame, before: usize) -> bool 
     behind && main.sentence == frame.sentence && main.joint != Some(Joint::After)
 }
 
+/// "It was stopped, and was partially in the next lane": where it stood, to which it had come before.
+pub(super) fn tells_where(reading: &Reading<'_>, frame: &Frame) -> bool {
+    let words = &reading.story.tokens[frame.first..frame.end];
+    let partly = words.iter().any(|token| matches!(token.text.as_str(), "partially" | "partly"));
+    frame.act() == Some(Act::Drift) && partly && matches!(words[0].text.as_str(), "was" | "were" | "is")
+}
+
 /// "slowed to a stop while entering the intersection": it came in, and stopped there.
 fn enters_as_it_stops(reading: &Reading<'_>, fact: &ActFact, frame: &Frame, last: &ActFact) -> bool {
     let stop = &reading.story.frames[last.step as usize];
@@ -326,8 +336,8 @@ fn enters_as_it_stops(reading: &Reading<'_>, fact: &ActFact, frame: &Frame, last
         && frame.clause > stop.clause
 }
 
-/// The act of a frame, as it counts in the account.
-fn act_of(reading: &Reading<'_>, number: usize, frame: &Frame, pushed: bool) -> Option<Act> {
+/// The act of a frame, as it counts in the account, where the last one counted so.
+fn act_of(reading: &Reading<'_>, number: usize, frame: &Frame, pushed: bool, so_far: Option<Act>) -> Option<Act> {
     if pushed {
         return Some(Act::Pushed);
     }
@@ -397,11 +407,14 @@ fn act_of(reading: &Reading<'_>, number: usize, frame: &Frame, pushed: bool) -> 
         Act::Enter if enters_a_lane(reading, number, frame) => Act::LaneChange,
         Act::Follow | Act::SetOff | Act::Drift if comes_out => Act::PullOut,
         Act::Follow if goes_on_from_a_stand(reading, number, frame, &words) => Act::SetOff,
-        Act::Follow if sets_off_at_green(reading, number, frame) => Act::SetOff,
+        Act::Follow if sets_off_at_green(reading, number, frame) || leaves_rest(reading, frame) => Act::SetOff,
         Act::Follow if sets_off_with_subject(reading, frame, &words) => Act::SetOff,
         Act::Follow if moved().is_none() && goes_at_green(reading, frame, &words) => Act::SetOff,
-        // Who came along and was "beginning to enter" did not stand.
-        Act::SetOff if words.chars().take(24).collect::<String>().contains("enter") && moved() == Some(Act::Follow) => {
+        // Who came along, or "began to proceed straight on", and was "beginning to enter" did not stand.
+        Act::SetOff
+            if words.chars().take(24).collect::<String>().contains("enter")
+                && (moved() == Some(Act::Follow) || matches!(so_far, Some(Act::Follow | Act::Enter))) =>
+        {
             if enters_a_lane(reading, number, frame) {
                 Act::LaneChange
             } else {
@@ -670,6 +683,25 @@ pub(super) fn sets_off_at_green(reading: &Reading<'_>, number: usize, frame: &Fr
     frame.act() == Some(Act::Follow) && slowed.is_some_and(red)
 }
 
+/// "moved forward from a standing position", "rolled on from a stop": who goes on so had stood. "from a stop sign" is a place.
+pub(super) fn leaves_rest(reading: &Reading<'_>, frame: &Frame) -> bool {
+    let sentence = reading.story.sentences[frame.sentence];
+    let words = &reading.story.tokens[frame.first..sentence.end.min(frame.end + REST_WITHIN)];
+    let mut words = words.iter().map(|token| token.text.as_str());
+    let from = words.any(|word| word == "from");
+    let says_how = |word: &&str| matches!(*word, "a" | "an" | "its" | "the" | "complete" | "full" | "dead");
+    let mut rest = words.skip_while(says_how);
+    let stands = match (rest.next().unwrap_or_default(), rest.next().unwrap_or_default()) {
+        ("stationary" | "stopped" | "standing" | "parked" | "resting", next) => matches!(next, "position" | "start"),
+        ("stop" | "halt", next) => !matches!(next, "sign" | "line" | "bar"),
+        (word, _) => matches!(word, "standstill" | "rest"),
+    };
+    frame.act() == Some(Act::Follow) && frame.happened() && from && stands
+}
+
+/// "from a stop" stands so near behind the verb. [tokens]
+const REST_WITHIN: usize = 10;
+
 /// "Once the light turned green, it began to proceed, and a car behind it proceeded forward": so did that.
 fn sets_off_with_subject(reading: &Reading<'_>, frame: &Frame, words: &str) -> bool {
     let Some(who) = frame.who.filter(|who| *who != SUBJECT) else { return false };
@@ -694,16 +726,16 @@ fn goes_at_green(reading: &Reading<'_>, frame: &Frame, words: &str) -> bool {
     let own = reading.story.world.actors[SUBJECT].heading.map(|(heading, ..)| heading);
     let other_way = known.heading.is_some_and(|(heading, ..)| own.is_some_and(|own| own != heading));
     let comes = known.relations.iter().any(|(relation, _)| matches!(relation, Relation::Behind | Relation::Opposite));
-    let waits = |other: &Frame| {
-        other.who == Some(SUBJECT)
-            && other.sentence == frame.sentence
-            && matches!(other.act(), Some(Act::Hold | Act::Stop))
-    };
+    let stands = |other: &Frame| matches!(other.act(), Some(Act::Hold | Act::Stop));
+    let waits = |other: &Frame| other.who == Some(SUBJECT) && other.sentence == frame.sentence && stands(other);
+    // "It came to a stop beside a van. When the light turned green, ...": it stood already.
+    let own = reading.before(SUBJECT).filter(|(_, other)| other.first < frame.first && other.happened());
+    let stood = own.map(|(_, other)| other).filter(|other| other.act().is_some()).last().is_some_and(stands);
     goes && green
         && turned_green(reading, frame)
         && frame.form == Form::Past
         && !(other_way || comes)
-        && reading.story.frames.iter().any(waits)
+        && (stood || reading.story.frames.iter().any(waits))
 }
 
 /// "passed a parked trailer", "passed behind the van".

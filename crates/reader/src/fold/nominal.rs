@@ -15,35 +15,90 @@ pub(super) fn is_in_turn(reading: &Reading<'_>, actor: Actor) -> bool {
     turn_of(reading, actor).is_some()
 }
 
+/// A turn that no verb tells.
+struct Turned {
+    words: Range<usize>,
+    /// The frame with which it is told.
+    number: usize,
+    side: Option<LeftRight>,
+    /// It was left off.
+    begun: bool,
+}
+
 /// Adds the turn in which somebody was, where none is told with a verb: before it slowed or stood in it.
 pub(super) fn add_turn(reading: &Reading<'_>, actor: Actor, all: &mut Vec<ActFact>) {
     let turns = |fact: &ActFact| matches!(fact.act, Act::Turn | Act::UTurn) && !fact.after_contact;
     if all.iter().any(turns) {
         return;
     }
-    let Some((words, number)) = turn_of(reading, actor) else { return };
+    let Some(Turned { words, number, side, begun }) = turn_of(reading, actor) else { return };
     let waits = |fact: &ActFact| matches!(fact.act, Act::Stop | Act::Hold | Act::Slow) && !fact.after_contact;
     let before = all.iter().filter(|fact| !fact.after_contact).count();
-    let at = all.iter().position(waits).unwrap_or(before);
+    // Which it left off: to stand for the second time.
+    let first = if begun { all.iter().rposition(waits) } else { all.iter().position(waits) };
+    let at = first.unwrap_or(before);
     // It turned before it waited.
     if let Some(waiting) = all.get_mut(at).filter(|fact| waits(fact)) {
         waiting.step = waiting.step.max(1);
     }
     let step = all.get(at).filter(|fact| waits(fact)).map_or(number as u32, |fact| fact.step - 1);
     let source = reading.words(words.start, words.end);
-    let (act, side) = (Act::Turn, Some(LeftRight::Right));
-    let (after_contact, begun, done, after_other, manner) = (false, false, false, None, None);
-    all.insert(at, ActFact { act, side, step, after_contact, begun, done, after_other, manner, source });
+    let (after_contact, done, after_other, manner) = (false, false, None, None);
+    all.insert(at, ActFact { act: Act::Turn, side, step, after_contact, begun, done, after_other, manner, source });
 }
 
-/// The words for the turn in which somebody is told to have been, and the frame with which that is told.
-fn turn_of(reading: &Reading<'_>, actor: Actor) -> Option<(Range<usize>, usize)> {
+/// The turn in which somebody is told to have been.
+fn turn_of(reading: &Reading<'_>, actor: Actor) -> Option<Turned> {
     let until = reading.until().min(reading.story.tokens.len());
     (0..until).find_map(|at| {
+        if let Some((words, side)) = left_off(reading, at) {
+            let number = told_with(reading, actor, at)?;
+            let waits = matches!(reading.story.frames[number].act(), Some(Act::Stop | Act::Slow | Act::Hold));
+            let goes = reading.before(actor).any(|(other, frame)| other < number && frame.act().is_some_and(goes_on));
+            // What went back out of it is told of that.
+            let back = reading.did(actor, Act::Reverse);
+            return (waits && goes && !back).then_some(Turned { words, number, side, begun: true });
+        }
         let words = slip_lane(reading, at).filter(|_| actor == SUBJECT)?;
-        Some((words, told_with(reading, actor, at)?))
+        let number = told_with(reading, actor, at)?;
+        Some(Turned { words, number, side: Some(LeftRight::Right), begun: false })
     })
 }
+
+/// Acts by which somebody comes into a turn.
+const fn goes_on(act: Act) -> bool {
+    matches!(act, Act::SetOff | Act::Follow | Act::Enter | Act::Accelerate)
+}
+
+/// "set off and came to a stop before the turn was completed", "before it could finish its left turn": it had begun that. The side of a turn
+/// that was told before is its.
+fn left_off(reading: &Reading<'_>, at: usize) -> Option<(Range<usize>, Option<LeftRight>)> {
+    let tokens = &reading.story.tokens;
+    let word = |at: usize| tokens.get(at).map_or("", |token| token.text.as_str());
+    if word(at) != "before" {
+        return None;
+    }
+    let ends = |at: usize| ["complet", "finish", "conclu"].iter().any(|stem| word(at).starts_with(stem));
+    let clause = at + 1..(at + LEFT_OFF_WITHIN).min(tokens.len());
+    let clause = clause.take_while(|&at| !matches!(word(at), "," | "." | "when" | "and"));
+    let clause: Vec<usize> = clause.collect();
+    let turn = clause.iter().copied().find(|&at| word(at) == "turn")?;
+    let end = clause.iter().copied().find(|&at| ends(at))?;
+    let whose = clause.iter().any(|&at| matches!(word(at), "the" | "its" | "that" | "this"));
+    let side = |at: usize| match word(at) {
+        "left" => Some(LeftRight::Left),
+        "right" => Some(LeftRight::Right),
+        _ => None,
+    };
+    let told = || {
+        let before = (1..at).rfind(|&at| word(at).starts_with("turn") && side(at - 1).or(side(at + 1)).is_some())?;
+        side(before - 1).or(side(before + 1))
+    };
+    whose.then(|| (at..turn.max(end) + 1, side(turn - 1).or_else(told)))
+}
+
+/// What was left off stands so near behind "before". [tokens]
+const LEFT_OFF_WITHIN: usize = 9;
 
 /// The frame beside these words, where it is told of somebody: the last before them in their sentence, else the next behind them.
 fn told_with(reading: &Reading<'_>, actor: Actor, at: usize) -> Option<usize> {

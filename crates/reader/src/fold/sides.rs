@@ -215,11 +215,15 @@ const LANE_WITHIN: usize = 10;
 fn side_of_lane_entered(reading: &Reading<'_>, frame: &Frame) -> Option<LeftRight> {
     let (first, lane) = lane_entered(reading, frame)?;
     let end = reading.story.sentences[frame.sentence].end.min(lane + 5);
-    reading.story.tokens[first..end].iter().find_map(|token| match token.text.as_str() {
-        "left" | "leftmost" => Some(LeftRight::Left),
-        "right" | "rightmost" | "bike" | "bicycle" | "bus" => Some(LeftRight::Right),
+    let word = |at: usize| reading.story.tokens[at].text.as_str();
+    let (at, side) = (first..end).find_map(|at| match word(at) {
+        "left" | "leftmost" => Some((at, LeftRight::Left)),
+        "right" | "rightmost" | "bike" | "bicycle" | "bus" => Some((at, LeftRight::Right)),
         _ => None,
-    })
+    })?;
+    // "entered the AV's lane from the right": to the left.
+    let from = at > lane + 2 && word(at - 2) == "from";
+    Some(if from { side.other() } else { side })
 }
 
 /// The side to which the subject vehicle changed lanes, by the column, when it "proceeded into the right turn lane".

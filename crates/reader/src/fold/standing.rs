@@ -1,6 +1,9 @@
 //! State at the contact as the words tell it, how long somebody had stood, and why.
 
-use super::acts::{avoids, begins_to_go_on, drives_already, gains_speed, in_headline, names_mode, sets_off_at_green};
+use super::acts::{
+    avoids, begins_to_go_on, drives_already, gains_speed, in_headline, leaves_rest, names_mode, sets_off_at_green,
+    tells_where,
+};
 use super::controls::{in_its_queue, shown};
 use super::lanes::waits_to_change;
 use super::speeds::is_of_last_contact;
@@ -62,7 +65,13 @@ pub(super) fn state(reading: &Reading<'_>, actor: Actor) -> (Option<Fact<Contact
         if aside || act == Act::Follow && in_headline(reading, frame) || speed() || mode() {
             continue;
         }
-        if act == Act::Slow && told.stands() && avoids(reading, frame) || waits_to_change(reading, number, frame) {
+        let where_it_is = told.stands() && tells_where(reading, frame);
+        if let Some(standing) = told.standing.as_mut().filter(|_| where_it_is) {
+            // It had come there.
+            *standing = Fact { value: Standing::CameToStop, source: reading.of(frame) };
+        }
+        let braked = act == Act::Slow && told.stands() && avoids(reading, frame);
+        if braked || where_it_is || waits_to_change(reading, number, frame) {
             continue;
         }
         let act = match act {
@@ -70,7 +79,7 @@ pub(super) fn state(reading: &Reading<'_>, actor: Actor) -> (Option<Fact<Contact
             Act::SetOff if begins_to_go_on(reading, number, frame) || drives_already(reading, number, frame) => {
                 Act::Follow
             }
-            Act::Follow if sets_off_at_green(reading, number, frame) => Act::SetOff,
+            Act::Follow if sets_off_at_green(reading, number, frame) || leaves_rest(reading, frame) => Act::SetOff,
             act => act,
         };
         told.add(reading, frame, act);

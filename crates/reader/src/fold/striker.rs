@@ -80,7 +80,7 @@ pub(crate) fn striker(reading: &Reading<'_>, account: &Account) -> Option<Fact<S
         return by_rule(came, "who came over, of two of whom neither is said to have struck");
     }
     let value = match (frame.who, frame.object) {
-        (Some(SUBJECT), _) if rear_was_met(account) => Striker::Cp,
+        (Some(SUBJECT), _) if rear_was_met(account) && !runs_over(reading, frame, account) => Striker::Cp,
         (Some(SUBJECT), _) => Striker::Sv,
         (Some(_), _) | (None, Some(SUBJECT)) => Striker::Cp,
         (None, Some(_)) => Striker::Sv,
@@ -164,6 +164,19 @@ fn rear_was_met(account: &Account) -> bool {
     let rear = has_zone(&account.sv, |zone| zone.is_rear()) && (plain || !over);
     rear && sv_state(account) != Some(ContactState::Reversing)
 }
+
+/// "The rear wheel of the AV made contact with the dog" as it went on: a wheel that goes over somebody is not met by it.
+fn runs_over(reading: &Reading<'_>, frame: &Frame, account: &Account) -> bool {
+    let from = frame.first.saturating_sub(PART_WITHIN).max(reading.story.sentences[frame.sentence].first);
+    let wheel = |word: &str| ["tire", "tyre", "wheel"].iter().any(|stem| word.starts_with(stem));
+    let by_wheel = reading.story.tokens[from..frame.first].iter().any(|token| wheel(&token.text));
+    let small = matches!(group(account), Some(KindGroup::OnFoot | KindGroup::Animal));
+    let goes = matches!(sv_state(account), Some(ContactState::Moving | ContactState::SettingOff));
+    frame.with.is_some() && by_wheel && small && goes
+}
+
+/// The part that touches stands so near before its verb. [tokens]
+const PART_WITHIN: usize = 8;
 
 /// Whether the words of the contact say that the partner moved there: "the arm came down on it", "the gate swung into it".
 fn came_down(reading: &Reading<'_>) -> bool {

@@ -5,12 +5,12 @@ use crate::chunk::Piece;
 use crate::frame::{Frame, zone_of};
 use crate::lexicon::{Relation, Sense};
 use crate::world::{Actor, SUBJECT};
-use recrash_model::account::{EarlierTouch, Fact, Kind};
+use recrash_model::account::{Act, EarlierTouch, Fact, Kind};
 use recrash_model::zones::ContactZone;
 
 /// Zones of the contact that is the crash.
 pub(super) fn zones(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<ContactZone>> {
-    let Some(first) = reading.contacts.first else { return Vec::new() };
+    let Some(first) = reading.contacts.first else { return dropped_wheel(reading, actor).into_iter().collect() };
     let partner = reading.contacts.partner;
     let mut all: Vec<Fact<ContactZone>> = Vec::new();
     // What the crash told again leaves out stands where it was told first.
@@ -69,6 +69,27 @@ pub(super) fn zones(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<ContactZone
     }
     all
 }
+
+/// "its front right wheel dropped off the paved road", "fell into the trench": where that wheel is. "came off" loses it.
+fn dropped_wheel(reading: &Reading<'_>, actor: Actor) -> Option<Fact<ContactZone>> {
+    const ROADS: [&str; 9] = ["road", "roadway", "pavement", "edge", "lane", "hole", "trench", "ditch", "asphalt"];
+    let drops = |frame: &&Frame| {
+        let behind = &reading.story.tokens[frame.end - 1..reading.story.sentences[frame.sentence].end];
+        let (off, road) = (behind.iter().take(2), behind.iter().skip(1).take(DROPS_WITHIN));
+        let down = off.into_iter().any(|token| matches!(token.text.as_str(), "off" | "into" | "in" | "down" | "from"));
+        frame.act() == Some(Act::Fall)
+            && frame.who == Some(SUBJECT)
+            && frame.happened()
+            && down
+            && road.into_iter().any(|token| ROADS.contains(&token.text.as_str()))
+    };
+    let frame = reading.story.frames.iter().filter(|_| actor == SUBJECT).find(drops)?;
+    let zone = frame.with.as_ref().and_then(zone_of)?;
+    Some(Fact { value: zone, source: reading.of(frame) })
+}
+
+/// The road off which a wheel drops is named so near behind. [tokens]
+const DROPS_WITHIN: usize = 4;
 
 /// How the partner and another touched before the crash: whose part met which of the other.
 pub(super) fn earlier(reading: &Reading<'_>, frame: &Frame) -> Option<Fact<EarlierTouch>> {

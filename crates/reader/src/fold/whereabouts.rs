@@ -1,7 +1,7 @@
 //! Where others than the two are, seen from the subject vehicle.
 
 use super::Reading;
-use super::origin::{Clues, comes_against, first_relation, side_of_lane, side_of_road_of};
+use super::origin::{Clues, bound, comes_against, first_relation, side_named_at, side_of_lane, side_of_road_of};
 use crate::frame::{Frame, zone_of};
 use crate::lexicon::{Form, Relation, Sense};
 use crate::world::{Actor, SUBJECT};
@@ -133,13 +133,7 @@ fn on_oncoming_side(clues: &Clues<'_>) -> Option<Fact<Origin>> {
     reading.before(clues.actor).filter(|(_, frame)| stands(frame)).find_map(|(number, _)| {
         let (first, end) = reading.window(number);
         let at = (first..end.saturating_sub(1)).find(|&at| tokens[at + 1].text == "side")?;
-        let way = match tokens[at].text.strip_suffix("bound")? {
-            "north" => Compass::North,
-            "east" => Compass::East,
-            "south" => Compass::South,
-            "west" => Compass::West,
-            _ => return None,
-        };
+        let way = bound(&tokens[at].text)?;
         (own.eighths_to(way) == 4).then(|| reading.told(Origin::Opposite, at, at + 2))
     })
 }
@@ -230,7 +224,10 @@ fn at_side_of_road(clues: &Clues<'_>) -> Option<Fact<Origin>> {
     let stands = |act: Option<Act>| matches!(act, Some(Act::Hold | Act::Stop));
     let walks = reading.story.world.actors[actor].kind.is_some_and(|kind| kind.group() == KindGroup::OnFoot);
     let turned = reading.did(SUBJECT, Act::Turn) || reading.did(SUBJECT, Act::UTurn);
-    if !walks || turned {
+    // "a van parked facing east on the north curb".
+    let drives = reading.story.world.actors[actor].kind.is_some_and(Kind::is_vehicle);
+    let parked = drives && reading.before(actor).any(|(_, frame)| frame.sense == Sense::Parked);
+    if !(walks || parked) || turned {
         return None;
     }
     let of = |frame: &Frame| reading.of(frame);
@@ -240,9 +237,21 @@ fn at_side_of_road(clues: &Clues<'_>) -> Option<Fact<Origin>> {
     if let Some(side) = side_of_road_of(reading, actor, own, stands) {
         return Some(Fact { value: Origin::Beside { side }, source: of(first(&stands)?) });
     }
+    if let Some((side, at)) = side_behind_its_name(reading, actor, own) {
+        return Some(reading.told(Origin::Beside { side }, at, at + 2));
+    }
     let crosses = |act: Option<Act>| matches!(act, Some(Act::Cross | Act::Enter));
-    let side = side_of_road_of(reading, actor, own, crosses)?;
+    let side = side_of_road_of(reading, actor, own, crosses).filter(|_| walks)?;
     Some(Fact { value: Origin::Cross { side }, source: of(first(&crosses)?) })
+}
+
+/// "a cord held by a man on the west sidewalk": where who is named so stands, and the token that says it.
+fn side_behind_its_name(reading: &Reading<'_>, actor: Actor, own: Option<Compass>) -> Option<(LeftRight, usize)> {
+    let (_, end) = reading.story.world.actors[actor].kind_tokens?;
+    let word = |at: usize| reading.story.tokens.get(at).map_or("", |token| token.text.as_str());
+    let at = end + 1 + usize::from(word(end + 1) == "the");
+    let stands = matches!(word(end), "on" | "at" | "along");
+    side_named_at(reading, at, own).filter(|_| stands).map(|side| (side, at))
 }
 
 /// Who struck the rear of a partner that is behind, or of another that is, came from behind too.

@@ -55,6 +55,7 @@ impl Parser<'_> {
             (carry.governed, carry.after_comma) = (false, false);
             return true;
         }
+        self.world.main = carry.main.as_ref().map(|main| main.actor);
         self.world.apart = self.stands_farther(placed.end);
         self.world.before = carry.relation == Some(Relation::Behind);
         let actor = self.world.resolve(noun, tokens, hint);
@@ -274,6 +275,7 @@ impl Parser<'_> {
             let hint = relation_behind(all, at);
             let verb = all.get(at + 1).map(|next| &next.chunk);
             self.world.touches = matches!(verb, Some(Chunk::Verb(Sense::Contact, _)));
+            self.world.main = carry.main.as_ref().map(|main| main.actor);
             self.world.apart = self.stands_farther(placed.end);
             let actor = self.world.resolve(owner, (placed.first, placed.end), hint);
             (self.world.touches, self.world.apart) = (false, false);

@@ -14,6 +14,7 @@ pub(super) fn apply(tokens: &mut Vec<Token>) {
     hold_by_hand(tokens);
     name_passenger_cars(tokens);
     name_loose_boards(tokens);
+    name_holes(tokens);
     change_lanes(tokens);
     name_aliases(tokens);
     stand::apply(tokens);
@@ -26,6 +27,35 @@ pub(super) fn apply(tokens: &mut Vec<Token>) {
     turn_out_to_be(tokens);
     drive_as_company(tokens);
     part_owners(tokens);
+}
+
+/// "a stretch of the road that had been taken up", "a missing section of pavement": a hole.
+fn name_holes(tokens: &mut [Token]) {
+    const PIECES: [&str; 7] = ["section", "portion", "stretch", "part", "piece", "strip", "patch"];
+    const ROADS: [&str; 6] = ["road", "roadway", "pavement", "asphalt", "street", "lane"];
+    const GONE: [&str; 8] = ["removed", "missing", "milled", "excavated", "demolished", "dug", "torn", "taken"];
+    for at in 0..tokens.len().saturating_sub(4) {
+        let word = |ahead: usize| tokens.get(at + ahead).map_or("", |token| token.text.as_str());
+        if !PIECES.contains(&word(0)) || word(1) != "of" {
+            continue;
+        }
+        let the = usize::from(matches!(word(2), "the" | "its"));
+        let gone = usize::from(GONE.contains(&word(2 + the)));
+        let road = 2 + the + gone;
+        if !ROADS.contains(&word(road)) {
+            continue;
+        }
+        let be = usize::from(matches!(word(road + 2), "had" | "has")) + 1;
+        let that = matches!(word(road + 1), "that" | "which") && matches!(word(road + 1 + be), "was" | "been" | "is");
+        let out = usize::from(matches!(word(road + 3 + be), "up" | "out" | "away"));
+        let told = that && GONE.contains(&word(road + 2 + be));
+        let before = at > 0 && GONE.contains(&tokens[at - 1].text.as_str());
+        if told || before || gone > 0 {
+            let end = at + road + 1 + if told { 2 + be + out } else { 0 };
+            tokens[at..end].iter_mut().for_each(|token| "completely".clone_into(&mut token.text));
+            "pothole".clone_into(&mut tokens[at].text);
+        }
+    }
 }
 
 /// "the right most lane": one word.

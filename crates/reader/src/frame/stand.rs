@@ -1,6 +1,7 @@
 //! Standing, beginning and a green light, told without a verb of their own, in the words of the lexicon: "with the AV at rest" it stood,
 //! "went on to turn" proceeded to. The places of the tokens stay.
 
+use crate::lexicon::{Lexicon, Meaning};
 use crate::token::{Token, TokenKind};
 
 /// Rewords the tokens of a narrative.
@@ -10,6 +11,7 @@ pub(super) fn apply(tokens: &mut [Token]) {
         has_not_moved(tokens, at);
         stand_meanwhile(tokens, at);
         stand_parked(tokens, at);
+        reach_into(tokens, at);
         go_on_to(tokens, at);
         come_before(tokens, at);
         give_a_push(tokens, at);
@@ -124,6 +126,45 @@ fn stand_parked(tokens: &mut [Token], at: usize) {
         }
     }
 }
+
+/// "stopped, its left rear corner partly in the next lane", "with the rear of the AV half in the bus lane": and was partly in it. A lane "of" a
+/// road is that of another one.
+fn reach_into(tokens: &mut [Token], at: usize) {
+    let partly = matches!(word(tokens, at), "partially" | "partly" | "partway" | "halfway" | "half");
+    let into = matches!(word(tokens, at + 1), "in" | "into" | "within" | "inside");
+    let article = matches!(word(tokens, at + 2), "the" | "a" | "its");
+    if !(partly && into && article) {
+        return;
+    }
+    let lane = (at + 3..at + 8).find(|&at| word(tokens, at) == "lane");
+    if lane.is_none_or(|lane| matches!(word(tokens, lane + 1), "of" | "on")) {
+        return;
+    }
+    let part = |at: usize| Lexicon::get().longest(tokens, at, |meaning| matches!(meaning, Meaning::Part(_))).is_some();
+    let named = |&at: &usize| {
+        let leads = matches!(word(tokens, at - 1), "with" | "and" | ",");
+        leads && matches!(word(tokens, at), "its" | "the") && part(at + 1)
+    };
+    let Some(whose) = (at.saturating_sub(REACHES_WITHIN).max(1)..at.saturating_sub(1)).rfind(named) else { return };
+    let lead = word(tokens, whose - 1);
+    let plain = |token: &Token| token.kind != TokenKind::Mark && !token.text.ends_with("ing") && token.text != "was";
+    if !tokens[whose..at].iter().all(plain) {
+        return;
+    }
+    let and = if lead == "with" { whose - 1 } else { whose };
+    let joined = lead == "and";
+    put(tokens, whose, at, "completely");
+    if !joined {
+        "and".clone_into(&mut tokens[and].text);
+    }
+    for (token, new) in tokens[at - 1..].iter_mut().zip(["was", "partially", "in"]) {
+        new.clone_into(&mut token.text);
+        token.capital = false;
+    }
+}
+
+/// The part that reaches into a lane stands so near before "partly": "its rear driver side corner". [tokens]
+const REACHES_WITHIN: usize = 9;
 
 /// "was not in motion", "had yet to move", "had not yet moved": it stood.
 fn has_not_moved(tokens: &mut [Token], at: usize) {

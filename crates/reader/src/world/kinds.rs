@@ -77,9 +77,10 @@ pub fn same_kind(known: Kind, said: Kind) -> bool {
         Kind::Pickup => known == Kind::PickupWithTrailer,
         Kind::Minivan | Kind::Van => matches!(known, Kind::Van | Kind::Minivan),
         Kind::SemiTrailerTruck => known == Kind::Trailer,
-        Kind::PoliceCar | Kind::Ambulance | Kind::FireTruck => {
-            matches!(known, Kind::FirstResponder | Kind::PassengerCar | Kind::Suv)
-        }
+        // No fire engine is the SUV of the headline.
+        Kind::PoliceCar => matches!(known, Kind::FirstResponder | Kind::PassengerCar | Kind::Suv),
+        Kind::Ambulance => matches!(known, Kind::FirstResponder | Kind::Van),
+        Kind::FireTruck => known == Kind::FirstResponder,
         Kind::FirstResponder => matches!(known, Kind::PoliceCar | Kind::Ambulance | Kind::FireTruck),
         Kind::Bus | Kind::SchoolBus => matches!(known, Kind::Bus | Kind::SchoolBus),
         _ => one == other && matches!(one, KindGroup::Motorcycle | KindGroup::Cyclist),

@@ -315,6 +315,20 @@ impl World {
         (here && more.is_none()).then_some(actor)
     }
 
+    /// "The first van yielded to the second van and moved over, and the front of the van touched it": of two of a kind that are told apart,
+    /// the one that the sentence is about.
+    fn subject_of_two(&self, sought: &Sought<'_>) -> Option<Actor> {
+        let noun = sought.noun;
+        let plain = sought.is_definite() && noun.adjectives.is_empty() && noun.names.is_empty() && !noun.several;
+        let one = |known: &Known| known.kind == Some(sought.kind) && !known.several && known.mentions > 0;
+        let apart = |known: &Known| one(known) && (known.another || known.ordinal.is_some());
+        let main = self.main.filter(|main| *main != SUBJECT && plain && sought.hint.is_none())?;
+        let known = &self.actors[main];
+        let two = self.actors[1..].iter().filter(|known| one(known)).count() == 2;
+        let here = known.sentence == Some(self.sentence) && one(known) && sought.fits(known);
+        (two && here && self.actors[1..].iter().any(apart)).then_some(main)
+    }
+
     /// "The van": who is called by its names, else is of just this kind, else of one that this may mean; else the subject vehicle,
     /// where nobody else can be meant.
     fn of_kind(&mut self, sought: &Sought<'_>) -> Option<Meant> {
@@ -331,6 +345,7 @@ impl World {
         let one_of = rider && !noun.several;
         let found = self
             .latest(|known| called(known) && fits(known))
+            .or_else(|| self.subject_of_two(sought))
             .or_else(|| self.latest(|known| known.kind == Some(kind) && as_many(known) && !known.is_bystander()))
             .or_else(|| self.latest(as_many))
             .or_else(|| self.latest(|known| one_of && known.several && known.kind == Some(kind) && fits(known)));

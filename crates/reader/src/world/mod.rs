@@ -120,6 +120,8 @@ pub struct World {
     pub apart: bool,
     /// The noun that is looked up stands behind "behind": "stopped behind a van".
     pub before: bool,
+    /// Who the sentence that is read is about, as far as it is read.
+    pub main: Option<Actor>,
     /// The record says that it crashed with a car.
     with_car: bool,
     /// The noun that is looked up begins its sentence.
@@ -148,6 +150,7 @@ impl World {
             touches: false,
             apart: false,
             before: false,
+            main: None,
             with_car: own.partner == Some("car"),
             begins: false,
             first: 0,

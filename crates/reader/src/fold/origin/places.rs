@@ -26,8 +26,15 @@ pub(crate) fn side_of_road_of(
     own: Option<Compass>,
     comes: impl Fn(Option<Act>) -> bool,
 ) -> Option<LeftRight> {
-    let tokens = &reading.story.tokens;
-    let word = |at: usize| tokens.get(at).map_or("", |token| token.text.as_str());
+    reading.before(actor).filter(|(_, frame)| comes(frame.act())).find_map(|(number, _)| {
+        let (first, end) = reading.window(number);
+        (first..end).find_map(|at| side_named_at(reading, at, own))
+    })
+}
+
+/// "left side of the street", "south sidewalk", of who goes west: the left one.
+pub(crate) fn side_named_at(reading: &Reading<'_>, at: usize, own: Option<Compass>) -> Option<LeftRight> {
+    let word = |at: usize| reading.story.tokens.get(at).map_or("", |token| token.text.as_str());
     let compass = |at: usize| match word(at) {
         "north" | "northern" => Some(Compass::North),
         "east" | "eastern" => Some(Compass::East),
@@ -36,22 +43,44 @@ pub(crate) fn side_of_road_of(
         _ => None,
     };
     let road = |at: usize| (at..at + 5).any(|at| matches!(word(at), "road" | "roadway" | "street" | "alley" | "lot"));
-    reading.before(actor).filter(|(_, frame)| comes(frame.act())).find_map(|(number, _)| {
-        let (first, end) = reading.window(number);
-        (first..end).find_map(|at| {
-            let kerb = matches!(word(at + 1), "sidewalk" | "curb");
-            match word(at) {
-                "left" if kerb || word(at + 1) == "side" && road(at + 2) => Some(LeftRight::Left),
-                "right" if kerb || word(at + 1) == "side" && road(at + 2) => Some(LeftRight::Right),
-                _ if kerb || word(at + 1) == "side" => match own?.eighths_to(compass(at)?) {
-                    1..=3 => Some(LeftRight::Right),
-                    5..=7 => Some(LeftRight::Left),
-                    _ => None,
-                },
-                _ => None,
-            }
-        })
+    let kerb = matches!(word(at + 1), "sidewalk" | "curb");
+    match word(at) {
+        "left" if kerb || word(at + 1) == "side" && road(at + 2) => Some(LeftRight::Left),
+        "right" if kerb || word(at + 1) == "side" && road(at + 2) => Some(LeftRight::Right),
+        _ if kerb || word(at + 1) == "side" => match own?.eighths_to(compass(at)?) {
+            1..=3 => Some(LeftRight::Right),
+            5..=7 => Some(LeftRight::Left),
+            _ => None,
+        },
+        _ => None,
+    }
+}
+
+/// The way of a road or a side of it: "northbound".
+pub(crate) fn bound(word: &str) -> Option<Compass> {
+    Some(match word.strip_suffix("bound")? {
+        "north" => Compass::North,
+        "northeast" => Compass::Northeast,
+        "east" => Compass::East,
+        "southeast" => Compass::Southeast,
+        "south" => Compass::South,
+        "southwest" => Compass::Southwest,
+        "west" => Compass::West,
+        "northwest" => Compass::Northwest,
+        _ => return None,
     })
+}
+
+/// "a van facing west on eastbound Elm Street", of who goes west: it is on the other side of the road.
+pub(super) fn faces_against_its_side(reading: &Reading<'_>, actor: Actor, own: Option<Compass>) -> bool {
+    let tokens = &reading.story.tokens;
+    let Some((_, first, end)) = reading.story.world.actors[actor].heading.filter(|_| faces_only(reading, actor)) else {
+        return false;
+    };
+    let on = |at: usize| tokens.get(at).is_some_and(|token| token.text == "on");
+    let side = tokens.get(end + 1 + usize::from(tokens.get(end + 1).is_some_and(|next| next.text == "the")));
+    let way = side.filter(|_| first < end && on(end)).and_then(|side| bound(&side.text));
+    way.zip(own).is_some_and(|(way, own)| own.eighths_to(way) == 4)
 }
 
 /// Behind whom, or from between whom, somebody comes out: "emerged from behind the van".

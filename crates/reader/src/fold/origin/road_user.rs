@@ -7,8 +7,9 @@ mod spots;
 
 use super::fallback::{square_front, zone_side};
 use super::places::{
-    after_its_turn, behind_in_next_lane, climbs, drives_on_another, faces_only, goes_over_to_pass, lead_of_subject,
-    on_side_street, passes_subject, screen, side_of_road, side_of_screen, turn_onto_its_street,
+    after_its_turn, behind_in_next_lane, climbs, drives_on_another, faces_against_its_side, faces_only,
+    goes_over_to_pass, lead_of_subject, on_side_street, passes_subject, screen, side_of_road, side_of_screen,
+    turn_onto_its_street,
 };
 use super::{Clues, changed_from, first_relation, lane_side, relation_to};
 use crate::chunk::Joint;
@@ -51,7 +52,7 @@ struct Case<'a> {
 type Told = Option<Fact<Origin>>;
 type Rule = fn(&Case<'_>) -> Told;
 
-const RULES: [Rule; 40] = [
+const RULES: [Rule; 41] = [
     |case| case.thrown_at_the_rear(),
     |case| case.out_of_a_place(),
     |case| case.stood_in_a_stall(),
@@ -64,6 +65,7 @@ const RULES: [Rule; 40] = [
     |case| case.enters_from_a_road(),
     |case| case.leaves_the_kerb(),
     |case| case.goes_over_from_the_kerb(),
+    |case| case.backs_from_a_named_kerb(),
     |case| case.moves_over_from_behind(),
     |case| case.behind_in_the_lane_it_goes_to(),
     |case| case.comes_from_behind(),
@@ -280,10 +282,14 @@ impl<'a> Case<'a> {
             return told_as(Origin::Cross { side }, heading.source.clone());
         }
         let from_front = self.clues.any(Relation::Opposite) && only(&self.account.sv, |zone| zone == Z::Front);
-        if self.ahead || lead_of_subject(self.reading, self.actor) || from_front && self.side.is_some() {
+        // "yielded to a van that was backing in the opposite lane": whom it gives way to is not in front of it then.
+        let own = self.account.sv.heading.as_ref().map(|fact| fact.value);
+        let against = self.clues.any(Relation::Opposite) || faces_against_its_side(self.reading, self.actor, own);
+        let lead = lead_of_subject(self.reading, self.actor) && !against;
+        if self.ahead || lead || from_front && self.side.is_some() {
             return told_as(Origin::Ahead, self.words_of(Act::Reverse));
         }
-        if self.clues.any(Relation::Opposite) {
+        if against {
             // In the opposing lane, which is on the left.
             let side = self.side.unwrap_or(LeftRight::Left);
             return told_as(Origin::Beside { side }, self.clues.has(Relation::Opposite));

@@ -4,7 +4,7 @@ use super::{Case, Told, by_rule, only, told_as};
 use crate::chunk::Spot;
 use crate::fold::origin::fallback::square_front;
 use crate::fold::origin::lane_side;
-use crate::fold::origin::places::{at_curb, in_stall, is_across, side_named, side_of_road, stood_in};
+use crate::fold::origin::places::{at_curb, in_stall, is_across, side_named, side_of_road, side_of_road_of, stood_in};
 use crate::frame::Frame;
 use crate::lexicon::{Relation, Sense};
 use crate::world::SUBJECT;
@@ -144,6 +144,20 @@ impl Case<'_> {
             return told_as(Origin::Cross { side }, self.words_of(Act::PullOut));
         }
         told_as(Origin::Parked { side: self.side_or_touched() }, self.words_of(Act::PullOut))
+    }
+
+    /// "a van parked on the north curb went backwards", of who goes west: out of the row at its right.
+    pub(super) fn backs_from_a_named_kerb(&self) -> Told {
+        let stands = |act: Option<Act>| matches!(act, Some(Act::Hold | Act::Park));
+        let own = self.account.sv.heading.as_ref().map(|fact| fact.value);
+        if !(self.parked && self.did(Act::Reverse) && at_curb(self.reading, self.actor)) || self.behind_first() {
+            return None;
+        }
+        let side = side_of_road_of(self.reading, self.actor, own, stands)?;
+        // Who faces the other way, as one at the left kerb does unless it is told, leaves the other end of its place.
+        let turned = own.zip(self.heading).map(|(own, other)| own.eighths_to(other.value));
+        let same = turned.map_or(side == LeftRight::Right, |turned| matches!(turned, 0 | 1 | 7));
+        if same { told_as(Origin::Parked { side: Some(side) }, self.words_of(Act::Reverse)) } else { None }
     }
 
     /// "A car that had been stopped along the curb merged into the lane", "a taxi at the right curb made a U-turn".
