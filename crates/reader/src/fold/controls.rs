@@ -171,7 +171,7 @@ fn was_at_a_sign(reading: &Reading<'_>, all: &mut Vec<Fact<Control>>) {
             || story.frames.iter().enumerate().filter(|(_, frame)| frame.first < at && frame.first >= sentence.first);
         let covered =
             before().any(|(number, frame)| frame.who.is_some() && reading.window(number).1 > at && !frame.aside);
-        let last = before().last().map(|(_, frame)| frame);
+        let last = before().next_back().map(|(_, frame)| frame);
         let stood = |frame: &Frame| matches!(frame.act(), Some(Act::Hold | Act::Stop)) && frame.happened();
         let own = last.filter(|frame| frame.who == Some(SUBJECT) && stood(frame));
         let was = own.is_some_and(|frame| (frame.end..at).any(|at| word(at) == "was"));
