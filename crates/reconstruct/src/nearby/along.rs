@@ -3,7 +3,7 @@
 use crate::facts::near::NEAR_M;
 use crate::ground::pieces::corner_m;
 use crate::nearby::scene::{LOT_MPS, Scene};
-use crate::nearby::way::{PASSES_BY_MPS, Way};
+use crate::nearby::way::{BRAKES_MPS2, PASSES_BY_MPS, Way};
 use crate::usual::{LANE_M, STANDS_MPS};
 use recrash_model::account::{LeftRight, Origin};
 use recrash_model::geometry::{Pose, Vec2};
@@ -109,11 +109,20 @@ impl<'a> Scene<'a> {
         places.filter(|(s_m, _)| !inside(*s_m)).map(stands).chain(beyond).collect()
     }
 
-    /// Behind the ego: it comes along and stands, or stands where the ego does from the start.
+    /// Behind the ego: it follows one that drives, comes along and stands, or stands where the ego does from the start.
     pub(super) fn follows(&self, half_m: f64) -> Vec<Way> {
         let rear = (0..=self.until).map(|step| self.at(step).0).fold(f64::MAX, f64::min) - self.front_m() - half_m;
         let (s_m, _) = self.at(self.until);
         let mut list = Vec::new();
+        if self.ego.states[self.until].velocity().length() > STANDS_MPS {
+            let place = |behind_m: f64| self.road(s_m - self.front_m() - half_m - behind_m, 0.0);
+            let [mean_mps, _] = self.speeds();
+            // It brakes as they touch.
+            let brakes_m = 0.5 * mean_mps * mean_mps / BRAKES_MPS2;
+            let stops_m = Some(mean_mps * self.contact_s + brakes_m);
+            let follows = |behind_m: f64| Way { stops_m, ..Way::straight(place(behind_m), mean_mps, self.contact_s) };
+            list.extend([brakes_m + 4.0, brakes_m + 8.0, 6.0, 12.0, 20.0].map(follows));
+        }
         for t_m in self.lines().into_iter().filter(|t_m| *t_m == 0.0 || self.ground.lanes > 1) {
             for speed_mps in self.speeds().into_iter().rev() {
                 for behind_m in [6.0, 12.0, 18.0, 26.0] {

@@ -98,6 +98,11 @@ impl<'a> Scene<'a> {
                 list.extend(self.crosses(right, near.does, half_m));
             }
             _ => {
+                // Traffic beside an ego that comes out of a space is in the lanes into which that goes.
+                let comes_out = self.told.sv_aside().is_some_and(|aside| aside.from_t_m != 0.0);
+                if untold && comes_out {
+                    list.extend(self.passers(None, half_m));
+                }
                 if !stands {
                     list.extend(self.oncoming(half_m));
                     list.extend(self.leads(half_m));

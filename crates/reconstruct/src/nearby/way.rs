@@ -9,7 +9,7 @@ use recrash_model::scenario::{ActorPlan, Deed, Leg, Place};
 const SLOWS_BEFORE_S: f64 = 3.0;
 pub(super) const SLOWS_BY_MPS: f64 = 2.0;
 pub(super) const PASSES_BY_MPS: f64 = 4.0;
-const BRAKES_MPS2: f64 = 2.5;
+pub(super) const BRAKES_MPS2: f64 = 2.5;
 
 /// Who backs begins to so long before the contact, and does so over this way. [s, m, m/s, m/s^2]
 const BACKS_BEFORE_S: f64 = 2.5;

@@ -140,7 +140,12 @@ impl Near {
         };
         // A queue stands.
         let queue = other.place.as_ref().is_some_and(|fact| text(&fact.source).contains("queue"));
-        let does = if queue && does == Does::Untold { Does::Stands } else { does };
+        let does = match does {
+            Does::Untold if queue => Does::Stands,
+            // "A gap in passing traffic".
+            Does::Untold if said(&["passing"]) && Does::Passes.fits(place) => Does::Passes,
+            does => does,
+        };
         if !does.fits(place) || !also.is_none_or(|also| also.fits(place)) {
             return None;
         }

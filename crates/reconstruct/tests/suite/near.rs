@@ -138,3 +138,22 @@ fn who_drives_ahead_of_something_that_lies_in_the_lane_has_gone_round_it_there()
     assert!((near.states[0].y - ego.states[0].y).abs() < 0.5, "{:?}", near.states[0]);
     assert!(near.states[last].x > ego.states[last].x && (near.states[last].y - ego.states[last].y).abs() > 1.2);
 }
+
+const FOLLOWED: &str = "The AV was traveling north on Elm Street with a bus traveling behind the AV. The front of the AV made contact with a mattress in the road.";
+const GAP: &str = "The AV was pulling out of a parking space at the right curb and came to a stop partly in the lane to wait for a gap in passing traffic. A van ahead of the \
+                   AV reversed and the rear of the van made contact with the front right of the AV.";
+
+#[test]
+fn who_is_behind_an_ego_that_drives_follows_it() {
+    let shown = shown_but(FOLLOWED, "near", far_off);
+    let (near, ego, last) = (track(&shown, "near"), shown.rollout.ego_track(), before_contact(&shown));
+    assert!((0..=last).all(|step| near.states[step].x < ego.states[step].x && near.states[step].speed() > 3.0));
+}
+
+#[test]
+fn traffic_for_a_gap_in_which_the_ego_waits_goes_its_way() {
+    let shown = shown_but(GAP, "near", stands);
+    let (near, ego, last) = (track(&shown, "near"), shown.rollout.ego_track(), before_contact(&shown));
+    assert!(degrees_between(near.states[0].heading, ego.states[0].heading) < 10.0, "{:?}", near.states[0]);
+    assert!(near.states[0].x < ego.states[0].x && near.states[last].x > ego.states[last].x, "{:?}", near.states[last]);
+}
