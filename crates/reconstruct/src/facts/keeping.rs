@@ -4,7 +4,7 @@ use crate::told::crash::Told;
 use crate::told::doing::Doing;
 use crate::told::layout::strip_of;
 use crate::told::side::Turning;
-use crate::usual::{LANE_M, NARROW_M, STANDS_MPS, TIGHTEST_M, WHEELED_M};
+use crate::usual::{LANE_M, NARROW_M, STANDS_MPS, SWINGS_OUT_RAD, TIGHTEST_M, WHEELED_M, swing_rad};
 use recrash_model::account::{ContactState, Origin};
 use recrash_model::geometry::Vec2;
 use recrash_model::kinds::PartnerKind;
@@ -51,7 +51,12 @@ impl Told {
 /// For how long the partner is in no lane of its direction before it leaves its own for what is told; nothing of who does not come along
 /// lanes. [s]
 pub(super) fn off_lane_s(told: &Told, scenario: &Scenario, track: &ActorTrack, contact_s: f64) -> Option<f64> {
-    if !told.comes_along_lanes() || told.drives_elsewhere() || told.pulls_out_opposite() {
+    if !told.comes_along_lanes()
+        || told.drives_elsewhere()
+        || told.pulls_out_opposite()
+        || told.squeezes_by()
+        || told.splits_lanes().is_some()
+    {
         return None;
     }
     let leaves = told.leaves_its_lane();
@@ -128,6 +133,7 @@ pub(super) fn weaves(told: &Told, track: &ActorTrack, contact_s: f64) -> usize {
     let turned = math::wrap_angle(last.heading - first.heading).abs();
     let beside = matches!(told.origin, Origin::Beside { .. });
     let stays = !told.leaves_its_lane() || told.comes_straight_by() || told.passes_in_own_lane();
+    let stays = stays && !told.squeezes_by();
     let sideways = |pair: &[ActorState]| {
         let rate = math::wrap_angle(pair[1].heading - pair[0].heading).abs() / STEP_S;
         rate * pair[0].velocity().length()
@@ -220,6 +226,14 @@ pub(super) fn is_tight(kind: PartnerKind, states: &[ActorState]) -> bool {
 /// Whether it turns on the spot, slides or jumps, as nobody drives.
 pub(super) fn slides(kind: PartnerKind, states: &[ActorState]) -> bool {
     turns(kind, states).any(|(turn, speed_mps)| turn > SLIDES_RAD + most_rad(speed_mps))
+}
+
+/// In how many ways somebody on wheels that drives forwards swings out to the other side before it turns: one for so much. [rad]
+pub(super) fn swings(told: &Told, track: &ActorTrack, contact_s: f64) -> usize {
+    let until = ((contact_s / STEP_S) as usize).min(track.states.len() - 1);
+    let wheels = VehicleSpec::of(told.cp.kind).length_m > WHEELED_M && told.cp.state != ContactState::Reversing;
+    let swing = swing_rad(track.states[..=until].iter().map(|state| state.heading));
+    if wheels && told.cp.slants.is_none() { (swing / SWINGS_OUT_RAD) as usize } else { 0 }
 }
 
 impl Told {
