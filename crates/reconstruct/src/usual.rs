@@ -1,5 +1,7 @@
 //! Numbers and lengths that more than one part goes by, where nobody tells another.
 
+use recrash_model::math;
+
 /// Width of driving lanes. [m]
 pub(crate) const LANE_M: f64 = 3.4;
 
@@ -38,3 +40,22 @@ pub(crate) const TURNS_MPS: f64 = 5.0;
 
 /// Who is narrower rides beside the driving lanes, and gets by beside somebody. [m]
 pub(crate) const NARROW_M: f64 = 1.2;
+
+/// Who turns by this much and bends to the other side for it first, by more than the second, swings out. [rad]
+const TURNED_RAD: f64 = 0.35;
+pub(crate) const SWINGS_OUT_RAD: f64 = 0.14;
+
+/// How far somebody who turns bends to the other side for it first; 0 of who goes straight on. [rad]
+pub(crate) fn swing_rad(headings: impl Iterator<Item = f64>) -> f64 {
+    let (mut turned, mut last, [mut least, mut most]) = (0.0_f64, None, [0.0_f64; 2]);
+    for heading in headings {
+        turned += math::wrap_angle(heading - last.unwrap_or(heading));
+        last = Some(heading);
+        (least, most) = (least.min(turned), most.max(turned));
+    }
+    match turned.abs() > TURNED_RAD {
+        true if turned > 0.0 => -least,
+        true => most,
+        false => 0.0,
+    }
+}

@@ -4,7 +4,8 @@ use crate::told::crash::Told;
 use crate::told::doing::Doing;
 use crate::told::layout::strip_of;
 use crate::told::side::Turning;
-use crate::usual::{LANE_M, NARROW_M, STANDS_MPS, TIGHTEST_M, WHEELED_M};
+use crate::told::zones::side_of;
+use crate::usual::{LANE_M, NARROW_M, STANDS_MPS, SWINGS_OUT_RAD, TIGHTEST_M, WHEELED_M, swing_rad};
 use recrash_model::account::{ContactState, Origin};
 use recrash_model::geometry::Vec2;
 use recrash_model::kinds::PartnerKind;
@@ -51,7 +52,12 @@ impl Told {
 /// For how long the partner is in no lane of its direction before it leaves its own for what is told; nothing of who does not come along
 /// lanes. [s]
 pub(super) fn off_lane_s(told: &Told, scenario: &Scenario, track: &ActorTrack, contact_s: f64) -> Option<f64> {
-    if !told.comes_along_lanes() || told.drives_elsewhere() || told.pulls_out_opposite() {
+    if !told.comes_along_lanes()
+        || told.drives_elsewhere()
+        || told.pulls_out_opposite()
+        || told.squeezes_by()
+        || told.splits_lanes().is_some()
+    {
         return None;
     }
     let leaves = told.leaves_its_lane();
@@ -115,6 +121,10 @@ const AWAY_M: f64 = 1.0;
 /// What nobody would take for driving straight on is worse than a step from the told zones. [half seconds]
 pub(crate) const ABSURD: usize = 4;
 
+/// Who drives along the ego's road begins at no more to it; and who goes straight on bends by the second for a half second. [rad]
+const BEGINS_RAD: f64 = 0.03;
+const BENDS_RAD: f64 = 0.12;
+
 /// In how many ways the partner weaves or swerves that nobody tells of.
 pub(super) fn weaves(told: &Told, track: &ActorTrack, contact_s: f64) -> usize {
     if !told.comes_along_lanes() || told.cp.turning != Turning::No || told.is_thrown() {
@@ -128,6 +138,7 @@ pub(super) fn weaves(told: &Told, track: &ActorTrack, contact_s: f64) -> usize {
     let turned = math::wrap_angle(last.heading - first.heading).abs();
     let beside = matches!(told.origin, Origin::Beside { .. });
     let stays = !told.leaves_its_lane() || told.comes_straight_by() || told.passes_in_own_lane();
+    let stays = stays && !told.squeezes_by();
     let sideways = |pair: &[ActorState]| {
         let rate = math::wrap_angle(pair[1].heading - pair[0].heading).abs() / STEP_S;
         rate * pair[0].velocity().length()
@@ -144,12 +155,17 @@ pub(super) fn weaves(told: &Told, track: &ActorTrack, contact_s: f64) -> usize {
     let turns = track.states[..=until].windows(2).map(|pair| math::wrap_angle(pair[1].heading - pair[0].heading));
     let (all, net) = turns.fold((0.0, 0.0), |(all, net), turn| (all + turn.abs(), net + turn));
     let backs = told.cp.state == ContactState::Reversing;
+    // Who drives along the ego's road begins along it.
+    let road =
+        matches!(told.origin, Origin::Ahead | Origin::Behind | Origin::Beside { .. }) && told.cp.slants.is_none();
+    let bends = if stays && !backs { (turned / BENDS_RAD) as usize } else { 0 };
     let absurd = [
+        road && stays && !told.diagonal && math::sin(first.heading).abs() > BEGINS_RAD,
         stays && turned > if backs { ASKEW_RAD } else { TURNS_RAD },
         stays && aside_m > OVER_M,
         stays && all - net.abs() > BACK_RAD,
     ];
-    few + ABSURD * absurd.into_iter().filter(|is| *is).count()
+    few + bends + ABSURD * absurd.into_iter().filter(|is| *is).count()
 }
 
 /// Who came along the road before it backed in line was at no more to it. [rad]
@@ -220,6 +236,29 @@ pub(super) fn is_tight(kind: PartnerKind, states: &[ActorState]) -> bool {
 /// Whether it turns on the spot, slides or jumps, as nobody drives.
 pub(super) fn slides(kind: PartnerKind, states: &[ActorState]) -> bool {
     turns(kind, states).any(|(turn, speed_mps)| turn > SLIDES_RAD + most_rad(speed_mps))
+}
+
+/// In how many ways somebody on wheels that drives forwards swings out to the other side before it turns: one for so much. [rad]
+pub(super) fn swings(told: &Told, track: &ActorTrack, contact_s: f64) -> usize {
+    let until = ((contact_s / STEP_S) as usize).min(track.states.len() - 1);
+    let wheels = VehicleSpec::of(told.cp.kind).length_m > WHEELED_M && told.cp.state != ContactState::Reversing;
+    let swing = swing_rad(track.states[..=until].iter().map(|state| state.heading));
+    if wheels && told.cp.slants.is_none() { (swing / SWINGS_OUT_RAD) as usize } else { 0 }
+}
+
+/// Who runs into the rear of one that stands, on the side to which it is told to turn, has begun to. [rad]
+const BEGUN_RAD: f64 = 0.09;
+
+/// Whether somebody who has yet to turn for that has not begun to.
+pub(super) fn is_before_turn(told: &Told, track: &ActorTrack, contact_s: f64) -> bool {
+    let left = match told.cp.movement.filter(|_| told.cp.turns_later && told.sv.turning == Turning::No) {
+        Some(Movement::LeftTurn) => 1.0,
+        Some(Movement::RightTurn) => -1.0,
+        _ => return false,
+    };
+    let until = ((contact_s / STEP_S) as usize).min(track.states.len() - 1);
+    let turned = math::wrap_angle(track.states[until].heading - track.states[0].heading);
+    told.sv.state.stands() && side_of(&told.sv.zones) == Some(left) && left * turned < BEGUN_RAD
 }
 
 impl Told {

@@ -3,7 +3,6 @@
 use crate::told::doing::Doing;
 use crate::told::side::{Side, Turning};
 use crate::usual::STANDS_MPS;
-use recrash_model::account::Act;
 use recrash_model::geometry::Vec2;
 use recrash_model::math;
 use recrash_model::metrics::CheckResult;
@@ -257,9 +256,8 @@ pub(super) fn check(side: &Side, way: &Way<'_>) -> Option<(String, CheckResult, 
         Movement::EnteringTraffic => {
             let (words, degrees) = bent();
             // Who comes along a crossing road enters the ego's straight across.
-            let pulls_out = side.acts.iter().any(|doing| doing.act == Act::PullOut);
-            let across = way.crosses && way.slant_deg() >= ACROSS_DEG && !pulls_out;
-            let out = way.is_off_lanes(&way.track.states[0]) || way.stood() || across;
+            let across = way.crosses && way.slant_deg() >= ACROSS_DEG;
+            let out = way.is_off_lanes(&way.track.states[0]) || way.stood() || across || side.came_along;
             (
                 out && (beside_m.abs() >= LEFT_LINE_M || degrees >= BENDS_DEG || across),
                 format!("{words}, {:.1} m aside", beside_m.abs()),

@@ -89,6 +89,8 @@ pub(crate) fn off_its_way(told: &Told, scenario: &Scenario, rollout: &Rollout) -
     let ego = rollout.ego_track();
     let weaves = |(track, time_s)| {
         keeping::weaves(told, track, time_s)
+            + SWINGS * keeping::swings(told, track, time_s)
+            + if keeping::is_before_turn(told, track, time_s) { SWINGS } else { 0 }
             + usize::from(keeping::leaves_whom_it_passes(told, ego, track, time_s))
             + if keeping::goes_out_of_way(told, ego, track, time_s) { ABSURD } else { 0 }
             + if keeping::drives_askew(told, ego, track) { ABSURD } else { 0 }
@@ -98,6 +100,9 @@ pub(crate) fn off_its_way(told: &Told, scenario: &Scenario, rollout: &Rollout) -
     };
     (2.0 * off_s) as usize + touch.map_or(0, weaves)
 }
+
+/// That somebody swings out before its turn, or has not begun it, is worth a step from the told zones. [half seconds]
+const SWINGS: usize = 3;
 
 /// That nobody tells that it drove on the other side, or beside the lanes, is worse than four steps from the told zones. [half seconds]
 const OVER_EDGE: usize = 3 * ABSURD;

@@ -84,11 +84,20 @@ pub(super) fn junction(told: &Told, crossing: bool) -> Ground {
         || told.stands_beside(false)
         || has(told, Role::Kerb)
         || told.extras.iter().any(|extra| extra.between)
-        || told.crossed_near && told.cp.state == ContactState::Parked;
-    let usual: &[StripKind] = if parks { &[StripKind::Parking, StripKind::Sidewalk] } else { &[StripKind::Sidewalk] };
+        || told.crossed_near && told.cp.state == ContactState::Parked
+        || told.leaves_space();
+    // Stalls leave no room for more between the arms.
+    let stalls = matches!(told.origin, Origin::Stall { .. }) && told.strip().is_none();
+    let usual: &[StripKind] = match parks {
+        true if stalls => &[StripKind::Stalls],
+        true => &[StripKind::Parking, StripKind::Sidewalk],
+        false => &[StripKind::Sidewalk],
+    };
     // Of the partner's road, on both sides of the junction.
     let beside = told.beside_lanes(usual);
     let crosses = matches!(told.origin, Origin::Cross { .. });
+    // Nobody comes towards the ego, which has others parked on its left.
+    let alone = one_way && told.sv.turning == Turning::No && !has(told, Role::Oncoming);
     let along = if crosses { ["left", "right"] } else { ["own", "ahead"] };
     let arm = |id: &str, bearing_deg: f64, length_m: f64| {
         let start = RoadStart::Arm { junction: "j".to_owned(), bearing_deg, from_m: corner_m };
@@ -98,6 +107,8 @@ pub(super) fn junction(told: &Told, crossing: bool) -> Ground {
             Some(LeftRight::Left) if id == "own" => (behind_median(usual()), usual()),
             Some(LeftRight::Right) => (strips(lanes, &told.beside_edge()), usual()),
             Some(LeftRight::Left) => (usual(), behind_median(usual())),
+            None if alone && id == "own" => (strips(0, &beside), usual()),
+            None if alone && id == "ahead" => (usual(), strips(0, &beside)),
             None => (usual(), usual()),
         };
         straight(id, start, length_m, away, towards)
@@ -114,13 +125,11 @@ pub(super) fn junction(told: &Told, crossing: bool) -> Ground {
     };
     // The ego's lane lies on the x axis, or beside it.
     let centre_y = (lanes as f64 - 0.5) * LANE_M;
+    // The first road has to lead away from the junction.
+    let (own, ahead) = (arm("own", 180.0, APPROACH_M), arm("ahead", 0.0, APPROACH_M));
+    let (first, second) = if alone { (ahead, own) } else { (own, ahead) };
     let map = GraphMap {
-        roads: vec![
-            arm("own", 180.0, APPROACH_M),
-            arm("ahead", 0.0, APPROACH_M),
-            arm("left", 90.0, APPROACH_M),
-            arm("right", 270.0, APPROACH_M),
-        ],
+        roads: vec![first, second, arm("left", 90.0, APPROACH_M), arm("right", 270.0, APPROACH_M)],
         junctions: vec![JunctionSpec {
             id: "j".to_owned(),
             x_m: 0.0,

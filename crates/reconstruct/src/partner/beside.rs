@@ -60,7 +60,11 @@ pub(super) fn line_y_m(told: &Told, staging: &Staging) -> Option<f64> {
     if told.comes_along_kerb() && staging.ground.stands_m > 0.0 {
         return Some(0.0);
     }
-    if told.comes_over || told.is_met_on_wrong_side(&staging.ground, staging.cp) {
+    let wrong_side = told.is_met_on_wrong_side(&staging.ground, staging.cp);
+    if wrong_side && told.squeezes_by() {
+        return Some(staging.cp.position.y.max(staging.ground.sv_pose(0.0).position.y - 0.5 * LANE_M) + 0.5 * LANE_M);
+    }
+    if told.comes_over || wrong_side {
         return Some(staging.ground.oncoming_y_m(told.cp.lane).max(staging.cp.position.y));
     }
     if told.leaves_opposite() {

@@ -10,9 +10,10 @@ use crate::told::side::Turning;
 use crate::touch::lanes;
 use crate::touch::staging::Staging;
 use crate::usual::LANE_M;
-use recrash_model::account::{ContactState, LeftRight, Origin};
+use recrash_model::account::{Act, ContactState, LeftRight, Origin};
 use recrash_model::geometry::{Pose, Vec2};
 use recrash_model::math;
+use recrash_model::scenario::StripKind;
 use recrash_model::template::Movement;
 use recrash_roads::Course;
 
@@ -55,6 +56,7 @@ pub(super) fn keeps_lane(told: &Told, staging: &Staging, pace: &Pace, arm_m: f64
     let ego_brakes_s = || first_time(&ego_paces(told, &staging.ground, staging.sv_s_m).1.acts);
     let over_m = match told.gives_way_to_merge {
         true => since_m.max(usual_m),
+        false if told.squeezes_by() => (pace.driven_m - KEPT_M).clamp(usual_m, LEAVES_M.1),
         // It is half over when the ego brakes for it.
         false if told.slows_for_who_came_over() => {
             let since_s = 2.0 * (told.contact_s - ego_brakes_s());
@@ -108,9 +110,15 @@ pub(super) fn comes_by(told: &Told, staging: &Staging, pace: &Pace, arm_m: f64) 
     let leaves = told.sv_aside().is_some();
     let along = told.comes_along_kerb() || turns || leaves;
     let own_y_m = if along { staging.ground.sv_pose(0.0).position.y } else { staging.sv.position.y };
+    let splits = told.splits_lanes();
+    let own_y_m = match splits {
+        Some(LeftRight::Left) => own_y_m + 0.5 * LANE_M,
+        Some(LeftRight::Right) => own_y_m - 0.5 * LANE_M,
+        None => own_y_m,
+    };
     // Who is yet on its way out comes straight out of its lane, and does not go to the side of whom it passes for that first.
     let side = (cp.position.y - staging.sv.position.y).signum();
-    if !stood && comes_in * side > AWAY_RAD {
+    if !stood && comes_in * side > AWAY_RAD && splits.is_none() {
         let late = lanes::from_lane(told, staging, pace, arm_m);
         if late.is_some() || (own_y_m - out_y_m) * side > DIPS_M {
             return late;
@@ -142,6 +150,28 @@ pub(super) fn changed_behind(told: &Told, staging: &Staging, pace: &Pace, arm_m:
     };
     let line_y_m = staging.sv.position.y + if from == LeftRight::Left { LANE_M } else { -LANE_M };
     between_lines(staging, pace, arm_m, [(CHANGED_M + CHANGES_OVER_M, line_y_m), (CHANGED_M, staging.cp.position.y)])
+}
+
+/// Who drew in to the kerb and comes out again stood beside the lane so far before the contact, and left its line so far before. [m]
+const OUT_AGAIN_M: f64 = 9.0;
+const DREW_IN_M: f64 = 24.0;
+
+/// Who came along ahead of the ego, drew in to the kerb, and comes out from there without a stand: along the ego's lane, and where others
+/// park.
+pub(super) fn drew_in(told: &Told, staging: &Staging, pace: &Pace, arm_m: f64) -> Option<(Pose, Vec<Pose>)> {
+    let (cp, ground) = (&told.cp, &staging.ground);
+    let draws_in = cp.acts.iter().position(|doing| matches!(doing.act, Act::Park | Act::PullOver) && !doing.begun)?;
+    let comes_out = cp.acts.iter().rposition(|doing| doing.is_aside() && doing.act != Act::PullOver)?;
+    let drives = cp.state == ContactState::Moving && !cp.stood_first && told.origin == Origin::Ahead;
+    if !drives || comes_out <= draws_in || !ground.beside.contains(&StripKind::Parking) {
+        return None;
+    }
+    let own_y_m = ground.sv_pose(0.0).position.y;
+    let kerb_y_m = match cp.acts[draws_in].side {
+        Some(LeftRight::Left) => own_y_m + ground.kerbs_m[0],
+        _ => own_y_m - ground.kerbs_m[1],
+    };
+    between_lines(staging, pace, arm_m, [(DREW_IN_M, own_y_m), (OUT_AGAIN_M, kerb_y_m)])
 }
 
 /// The lane from which somebody came over before it stopped ahead of the ego, or beside it: the told one, else the one on its left where

@@ -76,6 +76,7 @@ pub(super) fn line_to(told: &Told, staging: &Staging, pace: Pace, at: impl Fn(Po
         length(begin).is_some_and(|found| (found - pace.driven_m).abs() < 0.02).then_some(begin)
     };
     let on_lanes = with_its_turn(told, staging, &pace, arm_m)
+        .or_else(|| lateral::drew_in(told, staging, &pace, arm_m))
         .or_else(|| lateral::keeps_lane(told, staging, &pace, arm_m))
         .or_else(|| lateral::comes_by(told, staging, &pace, arm_m))
         .or_else(|| lateral::changed_behind(told, staging, &pace, arm_m))

@@ -139,7 +139,7 @@ fn partner_pace(told: &Told, staging: &Staging, (ego, ego_m, before_s): (&Pace, 
             .unwrap_or(usual)
         }
         // Who comes from the kerb or out of a stall stood there.
-        ContactState::Moving if told.stood_beside() || enters && from_stand(told.origin) && !told.rolls_out() => {
+        ContactState::Moving if told.stood_beside() || enters && from_stand(told) => {
             let way_m = match told.origin {
                 Origin::Driveway { .. } => beside::out_m(told, staging).max(PULL_OUT_M),
                 _ => PULL_OUT_M,
@@ -183,8 +183,10 @@ const SWINGS_BACK_M: f64 = 6.0;
 /// Nobody backs on a tighter circle. [m]
 const LEAST_BACK_M: f64 = 5.0;
 
-fn from_stand(origin: Origin) -> bool {
-    !matches!(origin, Origin::Cross { .. } | Origin::Behind | Origin::Opposite)
+/// Whether somebody that enters traffic did so from a stand; not who is told to have come along ahead of the ego, or beside it.
+fn from_stand(told: &Told) -> bool {
+    let along = matches!(told.origin, Origin::Ahead | Origin::Beside { .. }) && told.cp.came_along;
+    !matches!(told.origin, Origin::Cross { .. } | Origin::Behind | Origin::Opposite) && !told.rolls_out() && !along
 }
 
 /// Who follows an ego that slows brakes so long after it, for so long at least. [s]

@@ -6,7 +6,7 @@ use crate::told::crash::Told;
 use crate::told::side::{Side, Slant, Turning, size_of};
 use crate::touch::lanes::{self, TURN_M, turn_m};
 use crate::touch::staging::Staging;
-use crate::usual::{LANE_M, TIGHTEST_M, WHEELED_M};
+use crate::usual::{LANE_M, SWINGS_OUT_RAD, TIGHTEST_M, WHEELED_M, swing_rad};
 use recrash_model::account::{ContactState, LeftRight, Origin};
 use recrash_model::geometry::{Pose, Vec2};
 use recrash_model::math;
@@ -177,10 +177,11 @@ pub(super) fn with_its_turn(told: &Told, staging: &Staging, pace: &Pace, arm_m: 
         _ => beside_m,
     };
     let joins: &[f64] = if abreast { &[12.0, 9.0, 15.0, 6.0] } else { &[3.0, 5.0, 8.0, 12.0, 16.0] };
-    joins.iter().find_map(|&joins_m| {
+    let by = |joins_m: f64, swings: bool| {
         let last_m = met_m - joins_m;
         let mut join = Course::begin(arm_m);
-        if !join.curve(ground.pose(last_m, beside_m), cp, false) || is_tight(&join, tightest_m(&told.cp)) {
+        let drawn = join.curve(ground.pose(last_m, beside_m), cp, false);
+        if !drawn || is_tight(&join, tightest_m(&told.cp)) || swings_out(&join) != swings {
             return None;
         }
         let turn_m = (last_m - ground.first_m()).max(0.0);
@@ -194,7 +195,16 @@ pub(super) fn with_its_turn(told: &Told, staging: &Staging, pace: &Pace, arm_m: 
         let begin_m = last_m - turn_m - (pace.driven_m - join.length_m() - turns_m);
         let on_way = on_way.filter(|s_m| *s_m > begin_m + 0.5).map(|s_m| ground.pose(s_m, beside_m));
         (begin_m < last_m - 1.0).then(|| (ground.pose(begin_m, beside_m), on_way.chain([cp]).collect()))
-    })
+    };
+    let first = |swings: bool| joins.iter().find_map(|joins_m| by(*joins_m, swings));
+    first(false).or_else(|| first(true))
+}
+
+/// Whether a line that turns swings out to the other side first.
+fn swings_out(line: &Course) -> bool {
+    let steps = (line.length_m() / PIECE_M * 10.0).ceil() as usize;
+    let headings = (0..=steps).map(|step| line.spot(line.length_m() * step as f64 / steps.max(1) as f64).heading);
+    swing_rad(headings) > SWINGS_OUT_RAD
 }
 
 /// Who has turned by no more than this comes straight. [rad]

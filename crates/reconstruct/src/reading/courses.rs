@@ -5,11 +5,12 @@ use crate::reading::words::text;
 use crate::told::crash::Told;
 use crate::told::doing::Doing;
 use crate::told::phase::Phase;
+use crate::told::queue::CREEPS_MPS;
 use crate::told::side::{Side, Slant, Turning};
 use crate::told::zones::side_of;
 use recrash_model::account::{
-    Account, Act, Act as Done, ActFact, ContactState, CrashType, LaneWord, LeftRight, Origin, Party, PlaceKind, Source,
-    Standing, Striker, told,
+    Account, Act, Act as Done, ActFact, ContactState, CrashType, LaneWord, LeftRight, Origin, Party, PlaceKind,
+    SignalState, Source, Standing, Striker, told,
 };
 use recrash_model::template::Movement;
 
@@ -166,7 +167,8 @@ impl Told {
         let moved_up = self.sv.phases.ends_with(&[Phase::Stands, Phase::Drives, Phase::Stands]);
         let went = self.sv.state == ContactState::SettingOff
             || self.sv.state == ContactState::Moving && self.sv.stood_first && self.sv.turning == Turning::No
-            || self.sv.state == ContactState::Stopped && moved_up && self.sv.turning == Turning::No;
+            || self.sv.state == ContactState::Stopped && moved_up && self.sv.turning == Turning::No
+            || self.slowed_until_green();
         let plain = self.cp.state == ContactState::Moving && !self.cp.stood_first && self.cp.turning == Turning::No;
         let straight = matches!(self.cp.movement, None | Some(Movement::Straight)) && self.cp.manner.is_none();
         let words = |source: &Source| match source {
@@ -185,6 +187,14 @@ impl Told {
             && only_there
             && ["behind", "trailing", "following"].iter().any(|word| place.contains(word))
             && !["approach", "from behind", "came up", "coming up"].iter().any(|word| place.contains(word))
+    }
+
+    /// Whether the ego slowed for a light, goes on straight as that has turned green, and is slow yet: who was behind it then waited there too.
+    fn slowed_until_green(&self) -> bool {
+        let sv = &self.sv;
+        let green = sv.control.is_some_and(|control| control.state == Some(SignalState::TurnedGreen));
+        let slow = sv.impact_mps.is_some_and(|mps| mps < CREEPS_MPS) && sv.slowed_from.is_some();
+        sv.state == ContactState::Moving && green && slow && sv.turning == Turning::No
     }
 
     /// "Was maneuvering around the parked truck": out of its line, away from the touched side where no other is told.

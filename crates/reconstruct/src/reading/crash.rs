@@ -1,6 +1,6 @@
 //! An account, read whole: everything that is told of the crash, and what has to be assumed.
 
-use crate::reading::order::{backs_behind, backs_first, stood_before, turns_green_late};
+use crate::reading::order::{backs_behind, backs_first, slows_behind, stood_before, turns_green_late};
 use crate::reading::origin::{self, assumed_origin};
 use crate::reading::side::side;
 use crate::reading::things::{self, POST};
@@ -99,6 +99,9 @@ impl Told {
         let sv_reverses = sv.state == ContactState::Reversing;
         let (backs_late, backs_early) = backs_behind(&account.sv, partner, origin);
         let (backs_late, backs_early) = match (cp.state, sv.state) {
+            (ContactState::Reversing, ContactState::Moving) if slows_behind(&account.sv, partner, origin) => {
+                (backs_late, !backs_late)
+            }
             (ContactState::Reversing, ContactState::Moving | ContactState::SettingOff) => (backs_late, false),
             (ContactState::Reversing, ContactState::Stopped) => (false, backs_early),
             _ => (false, false),

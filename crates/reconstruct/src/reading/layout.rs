@@ -31,6 +31,7 @@ impl Layout {
             cp: standing(account, partner),
             narrow: has(RoadFeature::NarrowStreet),
             one_way: has(RoadFeature::OneWay),
+            splits: splits_lanes(partner),
             centre_line: has(RoadFeature::DoubleYellowLine),
             right_lane: goes_out_right(account, partner),
             turn_lane: has(RoadFeature::TurnLane) && goes_to_turn_lane(account, partner)
@@ -40,6 +41,12 @@ impl Layout {
             rear_door: rear_door(account, partner),
         }
     }
+}
+
+/// Whether words tell that somebody passes between two lanes: "a lane-splitting van", "riding in between lanes".
+fn splits_lanes(party: &Party) -> bool {
+    let between = |text: String| text.contains("splitting") || text.ends_with("between");
+    party.acts.iter().any(|fact| fact.act == Act::Pass && !fact.after_contact && between(text(&fact.source)))
 }
 
 /// Whether the partner is told in a lane for left turns beside an ego in the left lane, or goes out to its left there, past the ego.

@@ -24,6 +24,13 @@ pub(super) fn backs_behind(sv: &Party, partner: &Party, origin: Origin) -> (bool
     (sets_off.is_some_and(|at| at < backs), early && !answers)
 }
 
+/// Whether the ego is told to have slowed behind that one ahead of it backed: it saw it back.
+pub(super) fn slows_behind(sv: &Party, partner: &Party, origin: Origin) -> bool {
+    let backs = steps(partner, |act| act == Act::Reverse).into_iter().min();
+    let slows = steps(sv, |act| matches!(act, Act::Slow | Act::Stop)).into_iter().min();
+    origin == Origin::Ahead && backs.is_some() && backs < slows
+}
+
 /// Whether the ego stopped for one that was reversing then: "came to a stop for a van that was backing up".
 fn stops_for_who_backs(sv: &Party, partner: &Party) -> bool {
     let before = |fact: &&ActFact| !fact.after_contact && !fact.begun;

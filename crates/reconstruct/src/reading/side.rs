@@ -134,6 +134,7 @@ pub(super) fn side(party: &Party, kind: Option<Kind>, assumed: &mut Vec<String>,
         slowed_from,
         stood_first,
         came_to_park,
+        came_along: came_along(party),
         came_there: came_there(party),
         rolls_out: rolls_out(party),
         stands_from_start: told(&party.standing) == Some(Standing::FromTheStart),
@@ -196,6 +197,12 @@ fn rolls_out(party: &Party) -> bool {
     let no_stop = |fact: &ActFact| fact.act == Act::FailToYield && words::text(&fact.source).contains("stop");
     let ran = before().any(|fact| fact.act == Act::RunStop || no_stop(fact));
     out.is_some() && !stood && (came || ran)
+}
+
+/// Whether the first that is told of somebody is that it drove along.
+fn came_along(party: &Party) -> bool {
+    let first = party.acts.iter().filter(|fact| !fact.after_contact).min_by_key(|fact| fact.step);
+    first.is_some_and(|fact| fact.act == Act::Follow)
 }
 
 /// Whether the first that is told of somebody who is parked is how it came there.

@@ -123,6 +123,13 @@ impl Told {
         across && backs && self.origin_told && self.place == PlaceKind::Street && !self.heading_told
     }
 
+    /// Whether the partner comes out of a space where others park: at the kerb of a street, or in a stall beside it.
+    pub(crate) fn leaves_space(&self) -> bool {
+        let space = matches!(self.origin, Origin::Parked { .. } | Origin::Stall { .. });
+        let street = matches!(self.place, PlaceKind::Street | PlaceKind::Intersection | PlaceKind::Other);
+        space && street && self.cp.state != ContactState::Stopped && !self.is_in_lane(false) && self.thing.is_none()
+    }
+
     /// From which side the partner comes across.
     pub(crate) fn comes_from_side(&self) -> Option<LeftRight> {
         match self.origin {

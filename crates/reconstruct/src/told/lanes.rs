@@ -98,7 +98,7 @@ impl Told {
     }
 
     /// The strip that the partner is told to be in, else the ego.
-    fn strip(&self) -> Option<StripKind> {
+    pub(crate) fn strip(&self) -> Option<StripKind> {
         [self.cp.lane, self.sv.lane].into_iter().flatten().find_map(strip_of)
     }
 

@@ -48,6 +48,8 @@ pub(crate) struct Layout {
     /// The street is narrow; it is one-way.
     pub(crate) narrow: bool,
     pub(crate) one_way: bool,
+    /// The partner rides or drives between two lanes: "lane-splitting".
+    pub(crate) splits: bool,
     /// A double yellow line divides it.
     pub(crate) centre_line: bool,
     /// A lane for left turns lies beside the ego's, which is told to be the left one of those that go on.

@@ -11,6 +11,11 @@ use recrash_model::account::{ContactState, LaneWord, LeftRight, Origin, PlaceKin
 use recrash_model::template::Movement;
 use recrash_model::zones::ContactZone;
 
+/// The side on which somebody is touched.
+fn touched_side(zones: &[ContactZone]) -> Option<LeftRight> {
+    side_of(zones).map(|side| if side > 0.0 { LeftRight::Left } else { LeftRight::Right })
+}
+
 impl Told {
     /// Whether the partner comes along the ego's lane behind it and passes it.
     pub(crate) fn passes_from_behind(&self) -> bool {
@@ -28,7 +33,15 @@ impl Told {
             && (self.cp.movement == Some(Movement::Passing) || pulls_out || self.goes_out())
             && matches!(self.cp.state, ContactState::Moving | ContactState::SettingOff)
             && self.cp.turning == Turning::No
-            && !own_lane
+            && (!own_lane || self.splits_lanes().is_some())
+    }
+
+    /// On which side of an ego that keeps its lane the partner comes by between that and the next one.
+    pub(crate) fn splits_lanes(&self) -> Option<LeftRight> {
+        let keeps = self.sv.turning == Turning::No && self.cp.turning == Turning::No && self.sv_aside().is_none();
+        let moves = self.cp.state == ContactState::Moving && !self.cp.stood_first && !self.is_at_kerb();
+        let splits = self.layout.splits && self.origin == Origin::Behind && keeps && moves;
+        self.cp.passes_on().or_else(|| touched_side(&self.sv.zones)).filter(|_| splits)
     }
 
     /// Whether the partner rolls back in line: from straight ahead, its rear against the ego's front.
@@ -49,9 +62,7 @@ impl Told {
     /// On which side of the ego the partner passes it in the lane for buses, in which the ego is not.
     pub(crate) fn bus_lane(&self) -> Option<LeftRight> {
         let alone = self.cp.lane == Some(LaneWord::Bus) && self.sv.lane != Some(LaneWord::Bus);
-        let touched =
-            || side_of(&self.sv.zones).map(|side| if side > 0.0 { LeftRight::Left } else { LeftRight::Right });
-        self.cp.passes_on().or_else(touched).filter(|_| alone && self.origin == Origin::Behind)
+        self.cp.passes_on().or_else(|| touched_side(&self.sv.zones)).filter(|_| alone && self.origin == Origin::Behind)
     }
 
     /// Whether the ego changes into the lane in which the partner passes it, and meets it on that side.
@@ -83,7 +94,7 @@ impl Told {
     /// Whether the partner stood behind the ego and changes lanes to the side on which it touches it then: out of the ego's lane.
     fn goes_out(&self) -> bool {
         let to = self.cp.aside.or_else(|| self.cp.passes_on());
-        let touched = side_of(&self.sv.zones).map(|side| if side > 0.0 { LeftRight::Left } else { LeftRight::Right });
+        let touched = touched_side(&self.sv.zones);
         let changes = self.cp.movement == Some(Movement::ChangingLanes);
         changes && self.cp.stood_first && to.is_some() && to == touched && !self.plainly
     }
@@ -131,6 +142,11 @@ impl Told {
             && self.thing.is_none()
             && self.door.is_none()
             && matches!(self.cp.movement, None | Some(Movement::Straight | Movement::Passing))
+    }
+
+    /// Whether that is in a narrow street: it comes along the middle of it.
+    pub(crate) fn squeezes_by(&self) -> bool {
+        self.layout.narrow && self.is_met_by_oncoming()
     }
 
     /// Whether an oncoming partner that drives straight on touches an ego that goes straight on or stands.

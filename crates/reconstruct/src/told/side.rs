@@ -45,6 +45,8 @@ pub(crate) struct Side {
     pub(crate) came_to_park: bool,
     /// It came along out of a lot or a driveway, and did not stop before the road.
     pub(crate) rolls_out: bool,
+    /// It is told to have driven along before anything else.
+    pub(crate) came_along: bool,
     /// It came to a stop before the last that it did.
     pub(crate) came_there: bool,
     /// Speed on the way there, of who is told to have slowed before the contact and still moved. [m/s]

@@ -2,7 +2,7 @@
 
 use crate::told::crash::Told;
 use crate::told::zones::side_of;
-use recrash_model::account::{ContactState, Kind};
+use recrash_model::account::{ContactState, Kind, LeftRight};
 use recrash_model::kinds::PartnerKind;
 use recrash_model::zones::ContactZone;
 
@@ -31,6 +31,13 @@ impl Told {
         let along = matches!(self.thing, Some(Kind::Curb | Kind::Wall));
         let ahead = side_of(&self.sv.zones).is_none() || self.sv.zones.contains(&ContactZone::Front);
         along && ahead && self.lies.is_none() && self.edge.is_none()
+    }
+
+    /// On which side of its front the ego meets a chain or a wire that hangs across its lane.
+    pub(crate) fn meets_chain(&self) -> Option<LeftRight> {
+        let hangs = self.thing == Some(Kind::Chain) && self.lies.is_none() && self.edge.is_none();
+        let side = side_of(&self.sv.zones).filter(|_| hangs && self.sv.zones.iter().all(|zone| zone.is_front()))?;
+        Some(if side > 0.0 { LeftRight::Left } else { LeftRight::Right })
     }
 
     /// Whether the partner is a thing that came into the way by itself.

@@ -6,7 +6,7 @@ use crate::told::rig::Rig;
 use crate::told::side::{Side, size_of};
 use crate::told::zones::zones_off;
 use recrash_metrics::contact::contact_geometry;
-use recrash_model::account::ContactState;
+use recrash_model::account::{ContactState, LeftRight};
 use recrash_model::geometry::{OrientedBox, Pose, Vec2};
 use recrash_model::zones::ContactZone;
 
@@ -39,6 +39,9 @@ pub(super) fn zone_pairs(told: &Told) -> Vec<(ContactZone, ContactZone)> {
     let (sv, cp) = (of(&told.sv.zones), if told.stands_across() { flanks.to_vec() } else { of(&told.cp.zones) });
     let (sv_near, cp_near) = (near(&told.sv.zones), near(&told.cp.zones));
     let mut pairs = Vec::new();
+    if told.meets_chain().is_some() {
+        pairs.extend(sv.iter().map(|zone| (*zone, ContactZone::Rear)));
+    }
     for (first, second) in [(&sv, &cp), (&sv, &cp_near), (&sv_near, &cp), (&sv_near, &cp_near)] {
         pairs.extend(first.iter().flat_map(|&a| second.iter().map(move |&b| (a, b))));
     }
@@ -141,6 +144,9 @@ pub(super) fn cp_points(told: &Told, zone: ContactZone) -> &'static [(f64, f64)]
         (Some(Lies::Hole), ContactZone::Rear | ContactZone::Front) => &points(zone)[..1],
         (Some(Lies::Hole), _) => &[],
         _ if told.stands_across() => &points(zone)[..1],
+        // Its middle hangs over the middle of the lane.
+        (None, ContactZone::Rear) if told.meets_chain() == Some(LeftRight::Left) => &[(-1.0, 0.45)],
+        (None, ContactZone::Rear) if told.meets_chain() == Some(LeftRight::Right) => &[(-1.0, -0.45)],
         _ => points(zone),
     }
 }

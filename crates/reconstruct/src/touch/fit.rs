@@ -121,9 +121,14 @@ impl Told {
         narrow && passes && self.origin == Origin::Behind && side_of(&self.sv.zones).is_some()
     }
 
-    /// Whether they rub along each other: a flank takes part, and it is not the front of the one on the rear of the other.
+    /// Whether they rub along each other: a flank takes part, and it is not the front of the one on the rear of the other. An oncoming one
+    /// does too where a flank of the ego alone is told.
     pub(super) fn scrapes(&self) -> bool {
-        self.crash_type == CrashType::Lateral && side_of(&self.sv.zones).is_some()
+        let flank = |zone: &ContactZone| matches!(zone, ContactZone::Left | ContactZone::Right);
+        let alone = !self.sv.zones.is_empty() && self.sv.zones.iter().all(flank);
+        let straight = self.sv.turning == Turning::No && self.cp.turning == Turning::No;
+        let meets = self.crash_type == CrashType::HeadOn && self.origin == Origin::Opposite && straight && alone;
+        (self.crash_type == CrashType::Lateral || meets) && side_of(&self.sv.zones).is_some()
     }
 
     /// Whether the front of the one is told to have met the rear of the other, both in one lane.

@@ -25,6 +25,9 @@ pub(super) const fn sign(side: LeftRight) -> f64 {
 /// Off the line of who keeps to it. [deg]
 const ASIDE_DEG: [f64; 9] = [0.0, 4.0, -4.0, 8.0, -8.0, 14.0, -14.0, 22.0, -22.0];
 
+/// What hangs across the lane, and is met with a corner, is aslant by so much. [deg]
+const HANGS_DEG: f64 = 10.0;
+
 /// Headings as somebody came, and at the contact. [rad]
 type Headings = (f64, f64);
 
@@ -48,6 +51,8 @@ pub(super) fn headings(told: &Told, sv_heading: f64, behind: f64) -> Vec<Heading
     if told.stands_across() {
         list.push((sv_heading, sv_heading + math::FRAC_PI_2));
     }
+    // It hangs a little aslant: the told corner comes to it first.
+    list.extend(told.meets_chain().map(|side| (sv_heading, sv_heading + sign(side) * rad(HANGS_DEG))));
     if told.backs_from_behind() {
         list.extend(REAR_TO_REAR_DEG.map(rad).map(|heading| (heading, heading)));
     }
@@ -95,6 +100,9 @@ fn along_the_road(told: &Told, sv_heading: f64, behind: f64) -> Vec<Headings> {
         let bases = along(told, sv_heading, follows.then_some(behind));
         list.extend(bases.iter().flat_map(|base| ASIDE_DEG.map(|off| (came(*base), base + rad(off)))));
     } else {
+        // Who follows it through its turn is about as far in that.
+        let follows = told.origin == Origin::Behind && told.cp.turning == told.sv.turning && !told.cp.turned;
+        list.extend(ASIDE_DEG.iter().filter(|_| follows).map(|off| (0.0, behind + rad(*off))));
         list.extend(turned(told, 0.0));
         // Out of the next lane some come no farther round.
         let from_beside = matches!(told.origin, Origin::Beside { .. }) && !told.cp.turned;

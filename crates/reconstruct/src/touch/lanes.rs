@@ -206,6 +206,9 @@ pub(crate) fn bend_from_lane(
 /// Who goes straight on has turned by no more than this. [rad]
 const STRAIGHT_RAD: f64 = 0.26;
 
+/// And in a narrow street by this it is worth as much as a metre beside its lane. [rad]
+const SQUEEZES_RAD: f64 = 0.07;
+
 /// How much somebody who touches so would have to bend to come there out of a lane of its direction: none, where it is in the middle of one;
 /// [`NOWHERE`], where none leads there.
 pub(super) fn bends(told: &Told, (ground, sv): (&Ground, Pose), cp: Pose, came: f64) -> u32 {
@@ -220,6 +223,10 @@ pub(super) fn bends(told: &Told, (ground, sv): (&Ground, Pose), cp: Pose, came: 
     if matches!(told.cp.turning, Turning::Left | Turning::Right) {
         let radius_m = turn_m(told);
         return if bend_from_lane(told, (ground, sv), cp, (came, radius_m)).is_some() { 0 } else { NOWHERE };
+    }
+    // Along the middle of a narrow street, as straight as it can.
+    if told.squeezes_by() {
+        return (turn.abs() / SQUEEZES_RAD).round() as u32;
     }
     let Some(lanes) = Lanes::of(ground, came) else { return 0 };
     let comes_round = told.comes_round_from_stand();

@@ -4,6 +4,7 @@ use crate::others::track;
 use crate::ways::{before_contact, degrees_between, made, partner, speeds, story};
 use recrash_model::account::{Act, EarlierTouch, Fact, LeftRight, Origin};
 use recrash_model::geometry::Vec2;
+use recrash_model::math;
 use recrash_model::metrics::CheckKind;
 use recrash_model::rollout::{ActorState, EventKind};
 use recrash_model::template::Movement;
@@ -189,4 +190,22 @@ fn who_crosses_a_lot_comes_from_among_the_stalls() {
     assert_eq!(states[0].speed(), 0.0);
     assert!((states[0].position() - met.position()).length() < 15.0, "{:?} to {met:?}", states[0]);
     assert!(Vec2::from_heading(states[0].heading).y.abs() > 0.9);
+}
+
+#[test]
+fn who_is_to_turn_where_it_touches_a_standing_ego_has_begun_to() {
+    let turned_deg = |zone: ContactZone| {
+        let mut account = story(
+            "The AV was stopped in the right lane. A sedan approached the AV from behind, and the front left of the sedan made contact with the rear \
+             right of the AV.",
+        );
+        account.sv.zones = vec![Fact::by_rule(zone, "made for this test")];
+        account.partner.as_mut().expect("a partner").movement =
+            Some(Fact::by_rule(Movement::RightTurn, "made for this test"));
+        let shown = made(&account);
+        let (states, last) = partner(&shown);
+        math::wrap_angle(states[0].heading - last.heading).to_degrees()
+    };
+    assert!(turned_deg(ContactZone::RearRight) > 5.0, "{}", turned_deg(ContactZone::RearRight));
+    assert!(turned_deg(ContactZone::Rear).abs() < 5.0, "{}", turned_deg(ContactZone::Rear));
 }

@@ -1,6 +1,7 @@
 //! Who is told to stand at the kerb stands beside the lanes, and who is told to be in a lane counted from a side is in that.
 
 use crate::ways::{made, story};
+use recrash_model::account::{Fact, LeftRight, Origin};
 use recrash_model::metrics::{CheckKind, CheckResult};
 use recrash_model::rollout::ActorTrack;
 use recrash_model::scenario::{MapSpec, StripKind};
@@ -104,4 +105,47 @@ fn a_machine_has_the_size_of_its_name() {
 #[test]
 fn a_narrow_street_has_a_lane_each_way() {
     assert_eq!(lanes(&made(&story(NARROW))), [1, 1]);
+}
+
+const OUT_AT_JUNCTION: &str = "The AV was traveling north and slowed for a stop sign at the intersection with Elm Street. A van that was parked at \
+                               the curb on the right pulled out, and the front left of the van made contact with the right side of the AV.";
+
+const BACK_AT_JUNCTION: &str = "The AV was traveling north and slowed for a stop sign at the intersection with Elm Street. A van that was parked \
+                                at the curb on the left reversed, and the rear right of the van made contact with the left side of the AV.";
+
+/// The strips on which somebody stood when it set out.
+fn stood_on(made: &Reconstruction) -> Option<StripKind> {
+    let scenario = recrash_roads::check(made.draft.clone()).expect("a sound scenario").value;
+    let (network, state) = (scenario.network(), partner(made).states[0]);
+    let lane = [0.0, std::f64::consts::PI]
+        .into_iter()
+        .find_map(|turn| network.lane_at(state.position(), state.heading + turn))?;
+    match network.road(network.lane(lane).road).part {
+        recrash_roads::RoadPart::Beside(kind) => Some(kind),
+        _ => None,
+    }
+}
+
+#[test]
+fn who_leaves_the_kerb_before_a_junction_stood_where_others_park() {
+    for (words, side) in [(OUT_AT_JUNCTION, LeftRight::Right), (BACK_AT_JUNCTION, LeftRight::Left)] {
+        let mut account = story(words);
+        account.came_from = Some(Fact::by_rule(Origin::Parked { side: Some(side) }, "made for this test"));
+        let made = made(&account);
+        assert!(made.is_true(), "{:?}", made.verdict);
+        assert_eq!(stood_on(&made), Some(StripKind::Parking), "{:?}", partner(&made).states[0]);
+    }
+}
+
+#[test]
+fn who_comes_towards_a_standing_ego_in_a_narrow_street_comes_along_its_middle() {
+    let most_deg = |words: &str| {
+        let made = made(&story(words));
+        assert!(made.is_true(), "{:?}", made.verdict);
+        let states = &partner(&made).states[..85];
+        let turned = |heading: f64| recrash_model::math::wrap_angle(heading - states[0].heading).to_degrees().abs();
+        states.iter().map(|state| turned(state.heading)).fold(0.0, f64::max)
+    };
+    let wide = NARROW.replace("a narrow street", "Elm Street");
+    assert!(most_deg(NARROW) < 8.0 && most_deg(NARROW) < most_deg(&wide), "{} {}", most_deg(NARROW), most_deg(&wide));
 }

@@ -1,7 +1,7 @@
 //! Sides, sequence and bends of manoeuvres: where somebody passes, when it acts, and how hard it turns.
 
-use crate::ways::{before_contact, made, partner, speeds, story};
-use recrash_model::account::Fact;
+use crate::ways::{before_contact, degrees_between, made, partner, speeds, story};
+use recrash_model::account::{Fact, Origin, PlaceKind, Speed, SpeedMeaning};
 use recrash_model::math;
 use recrash_model::rollout::{ActorState, STEP_S};
 use recrash_model::template::Movement;
@@ -188,4 +188,83 @@ fn who_slows_for_a_stop_sign_and_is_hit_from_behind_has_not_stood_there() {
     ));
     let first = ego(&shown)[0].speed();
     assert!(first > 2.0, "it comes along: {first} m/s");
+}
+
+#[test]
+fn who_drew_in_to_the_kerb_and_comes_out_again_was_there() {
+    let mut account = story(
+        "The AV was traveling behind an SUV on Elm Street. The SUV was traveling straight and pulled over to the right, and then it swerved to \
+         its left, and the front left of the SUV made contact with the front right of the AV.",
+    );
+    account.partner.as_mut().expect("a partner").movement =
+        Some(Fact::by_rule(Movement::EnteringTraffic, "made for this test"));
+    let shown = made(&account);
+    let (states, _) = partner(&shown);
+    let states = &states[..=before_contact(&shown)];
+    let least_m = states.iter().map(|state| state.y).fold(f64::MAX, f64::min);
+    assert!(states[0].y.abs() < 0.5 && least_m < -1.7, "{} {least_m}", states[0].y);
+    assert!(states.iter().all(|state| state.speed() > 1.0));
+}
+
+#[test]
+fn who_follows_into_a_turn_does_not_swing_out_for_it() {
+    let account = story(
+        "The AV was making a right turn at the intersection with Elm Street and came to a stop. A sedan behind the AV was making a right turn as \
+         well, and the front of the sedan made contact with the rear left of the AV.",
+    );
+    let shown = made(&account);
+    let (states, _) = partner(&shown);
+    let first = states[0].heading;
+    let out_deg = states[..=before_contact(&shown)]
+        .iter()
+        .map(|state| math::wrap_angle(state.heading - first).to_degrees())
+        .fold(0.0, f64::max);
+    assert!(out_deg < 8.0, "{out_deg}");
+}
+
+#[test]
+fn who_was_behind_as_the_light_turned_green_has_not_come_from_afar() {
+    let mut account = story(
+        "The AV was traveling on a highway on-ramp and slowed for a red light. The light turned green and the AV was proceeding forward. A sedan \
+         traveling directly behind the AV proceeded forward, and the front of the sedan made contact with the rear of the AV.",
+    );
+    account.place.kind = Some(Fact::by_rule(PlaceKind::Highway, "made for this test"));
+    account.sv.speeds = vec![Fact::by_rule(Speed { mps: 0.5, meaning: SpeedMeaning::Impact }, "made for this test")];
+    let shown = made(&account);
+    let (states, _) = partner(&shown);
+    let most_mps = states[..=before_contact(&shown)].iter().map(|state| state.speed()).fold(0.0, f64::max);
+    assert!(most_mps < 9.0, "{most_mps}");
+}
+
+#[test]
+fn who_enters_from_a_crossing_street_comes_straight_along_it() {
+    let account = story(
+        "The AV was traveling north on Elm Street. A sedan ran the stop sign and pulled out of the street on the right, and the front of the sedan \
+         made contact with the right side of the AV.",
+    );
+    assert!(
+        matches!(account.came_from.as_ref().map(|fact| fact.value), Some(Origin::Cross { .. })),
+        "{:?}",
+        account.came_from
+    );
+    let shown = made(&account);
+    let (states, _) = partner(&shown);
+    let last = &states[before_contact(&shown)];
+    assert!(degrees_between(last.heading, states[0].heading) < 16.0, "{} {}", last.heading, states[0].heading);
+}
+
+#[test]
+fn who_is_seen_to_back_began_before_the_ego_slowed_for_it() {
+    let mut account = story(
+        "The AV was traveling north when it approached a truck ahead that was reversing. The AV slowed, and the truck continued reversing, and the \
+         rear of the truck made contact with the front of the AV.",
+    );
+    account.sv.speeds = vec![Fact::by_rule(Speed { mps: 0.9, meaning: SpeedMeaning::Impact }, "made for this test")];
+    account.order = None;
+    let shown = made(&account);
+    let (states, _) = partner(&shown);
+    let backs = states.iter().position(|state| state.speed() < -0.05).expect("it backs");
+    let own = ego(&shown);
+    let slows = own.iter().position(|state| state.speed() < own[0].speed() - 0.3).expect("it slows");
+    assert!(backs < slows, "{backs} {slows}");
 }

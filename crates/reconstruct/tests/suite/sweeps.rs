@@ -5,6 +5,7 @@ use recrash_model::account::{Fact, Speed, SpeedMeaning};
 use recrash_model::geometry::{Pose, Vec2};
 use recrash_model::math;
 use recrash_model::metrics::{CheckKind, CheckResult};
+use recrash_model::scenario::Place;
 use recrash_model::zones::ContactZone;
 use recrash_reconstruct::Reconstruction;
 
@@ -104,4 +105,28 @@ fn who_passes_in_a_lane_of_its_own_does_not_turn_away_to_rub_along_whom_it_passe
         let ego = shown.rollout.ego_track().states[before_contact(&shown)];
         assert!(partner(&shown).0[..=before_contact(&shown)].iter().all(|state| state.y > ego.y + 1.0), "{text}");
     }
+}
+
+#[test]
+fn who_splits_lanes_comes_along_the_line_between_them() {
+    let side = |words: &str| {
+        let shown = made(&story(words));
+        assert!(shown.is_true(), "{:?}", shown.verdict);
+        let (states, _) = partner(&shown);
+        states[0].y - shown.rollout.ego_track().states[0].y
+    };
+    let splits = "The AV was traveling north in the right lane. A lane-splitting motorcycle behind the AV passed the AV on the left, and the right \
+                  side of the motorcycle made contact with the rear left of the AV.";
+    let passes = splits.replace("lane-splitting ", "");
+    assert!((1.2..2.2).contains(&side(splits)), "{}", side(splits));
+    assert!(side(&passes).abs() < 1.0, "{}", side(&passes));
+}
+
+#[test]
+fn a_chain_that_is_met_with_a_corner_hangs_across_the_lane() {
+    let shown = made(&story(
+        "The AV was traveling north when the front left of the AV made contact with a chain that was strung across the road.",
+    ));
+    let object = shown.draft.objects.first().expect("a chain");
+    assert!(matches!(object.at, Place::Plane { y_m, .. } if y_m.abs() < 0.7), "{:?}", object.at);
 }
