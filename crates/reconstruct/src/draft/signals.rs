@@ -8,7 +8,7 @@ use crate::told::side::{Side, Turning};
 use recrash_model::account::{
     ContactState, Control as Said, ControlDevice, LeftRight, Obeyed, Origin, SignalState, StandReason,
 };
-use recrash_model::scenario::{Actor, ActorPlan, Aspect, Control, Deed, Device, Phase, Trigger};
+use recrash_model::scenario::{Actor, ActorPlan, Aspect, Control, Deed, Device, Phase, StripKind, Trigger};
 use recrash_model::template::Movement;
 
 /// Longest phase. [s]
@@ -54,6 +54,11 @@ pub(crate) fn devices(told: &Told, ground: &Ground, ego: &ActorPlan, actors: &[A
     let at = |arm: &str, device: Device| Control { at: arm.to_owned(), set_back_m: 0.0, lanes: Vec::new(), device };
     let said = [("own-", &told.sv), (cp_arm, &told.cp)]
         .map(|(arm, side)| side.control.filter(|_| !arm.is_empty()).map(|said| (arm, side, said)));
+    // Nobody comes to a line of a street that is one-way.
+    let leads_in = |arm: &str| {
+        let road = ground.map.roads.iter().find(|road| arm.strip_suffix('-') == Some(road.id.as_str()));
+        road.is_none_or(|road| road.left.iter().any(|strip| strip.kind == StripKind::Driving))
+    };
     let mut list: Vec<Control> = Vec::new();
     for (arm, _, said) in said.iter().flatten() {
         let device = match said.device {
@@ -68,7 +73,7 @@ pub(crate) fn devices(told: &Told, ground: &Ground, ego: &ActorPlan, actors: &[A
     // At a stop that is told to be one for all there is a sign on every arm.
     if told.all_way && list.iter().any(|control| matches!(control.device, Device::StopSign {})) {
         for arm in ["own-", "ahead-", "left-", "right-"] {
-            if !list.iter().any(|control| control.at == arm) {
+            if leads_in(arm) && !list.iter().any(|control| control.at == arm) {
                 list.push(at(arm, Device::StopSign {}));
             }
         }
@@ -163,7 +168,9 @@ pub(crate) fn devices(told: &Told, ground: &Ground, ego: &ActorPlan, actors: &[A
     for (arms, program) in [(["own-", "ahead-"], along), (["left-", "right-"], across)] {
         for arm in arms {
             let program = if arm == "ahead-" { ahead.as_ref().or(program.as_ref()) } else { program.as_ref() };
-            if let Some(program) = program.cloned().filter(|_| !list.iter().any(|control| control.at == arm)) {
+            if let Some(program) =
+                program.cloned().filter(|_| leads_in(arm) && !list.iter().any(|control| control.at == arm))
+            {
                 list.push(at(arm, Device::Signal { program, offset_s: 0.0 }));
             }
         }
