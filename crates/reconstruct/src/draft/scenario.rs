@@ -41,7 +41,7 @@ pub(crate) fn draft(account: &Account, told: &Told, staging: &Staging) -> Scenar
     }
     let mut map = (*ground.map).clone();
     let begins = actors.iter().find(|actor| actor.id == "cp").map(|actor| &actor.plan.start);
-    map.roads[0].driveways.extend(begins.and_then(|begins| driveway(told, ground, begins)));
+    map.roads[ground.own_road()].driveways.extend(begins.and_then(|begins| driveway(told, ground, begins)));
     let control = signals::devices(told, ground, &recorded, &actors);
     let handover_s = match told.sv.state {
         ContactState::Parked => None,

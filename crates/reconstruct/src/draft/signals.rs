@@ -8,7 +8,7 @@ use crate::told::side::{Side, Turning};
 use recrash_model::account::{
     ContactState, Control as Said, ControlDevice, LeftRight, Obeyed, Origin, SignalState, StandReason,
 };
-use recrash_model::scenario::{Actor, ActorPlan, Aspect, Control, Deed, Device, Phase, RoadSpec, StripKind, Trigger};
+use recrash_model::scenario::{Actor, ActorPlan, Aspect, Control, Deed, Device, Phase, StripKind, Trigger};
 use recrash_model::template::Movement;
 
 /// Longest phase. [s]
@@ -54,10 +54,11 @@ pub(crate) fn devices(told: &Told, ground: &Ground, ego: &ActorPlan, actors: &[A
     let at = |arm: &str, device: Device| Control { at: arm.to_owned(), set_back_m: 0.0, lanes: Vec::new(), device };
     let said = [("own-", &told.sv), (cp_arm, &told.cp)]
         .map(|(arm, side)| side.control.filter(|_| !arm.is_empty()).map(|said| (arm, side, said)));
-    // Of a one-way road none leads towards the ego.
-    let drives = |road: &&RoadSpec| road.left.iter().any(|strip| strip.kind == StripKind::Driving);
-    let ahead_leads = ground.map.roads.iter().filter(drives).any(|road| road.id == "ahead");
-    let leads = |arm: &&str| ahead_leads || *arm != "ahead-";
+    // Nobody comes to a line of a street that is one-way.
+    let leads_in = |arm: &str| {
+        let road = ground.map.roads.iter().find(|road| arm.strip_suffix('-') == Some(road.id.as_str()));
+        road.is_none_or(|road| road.left.iter().any(|strip| strip.kind == StripKind::Driving))
+    };
     let mut list: Vec<Control> = Vec::new();
     for (arm, _, said) in said.iter().flatten() {
         let device = match said.device {
@@ -71,8 +72,8 @@ pub(crate) fn devices(told: &Told, ground: &Ground, ego: &ActorPlan, actors: &[A
     }
     // At a stop that is told to be one for all there is a sign on every arm.
     if told.all_way && list.iter().any(|control| matches!(control.device, Device::StopSign {})) {
-        for arm in ["own-", "ahead-", "left-", "right-"].into_iter().filter(|arm| leads(arm)) {
-            if !list.iter().any(|control| control.at == arm) {
+        for arm in ["own-", "ahead-", "left-", "right-"] {
+            if leads_in(arm) && !list.iter().any(|control| control.at == arm) {
                 list.push(at(arm, Device::StopSign {}));
             }
         }
@@ -165,9 +166,11 @@ pub(crate) fn devices(told: &Told, ground: &Ground, ego: &ActorPlan, actors: &[A
     let arrow = told.layout.arrow && told.sv.turning == Turning::Left && !comes_by;
     let ahead = ahead.or_else(|| arrow.then(|| vec![Phase { show: Aspect::Red, for_s: ALWAYS_S }]));
     for (arms, program) in [(["own-", "ahead-"], along), (["left-", "right-"], across)] {
-        for arm in arms.into_iter().filter(leads) {
+        for arm in arms {
             let program = if arm == "ahead-" { ahead.as_ref().or(program.as_ref()) } else { program.as_ref() };
-            if let Some(program) = program.cloned().filter(|_| !list.iter().any(|control| control.at == arm)) {
+            if let Some(program) =
+                program.cloned().filter(|_| leads_in(arm) && !list.iter().any(|control| control.at == arm))
+            {
                 list.push(at(arm, Device::Signal { program, offset_s: 0.0 }));
             }
         }

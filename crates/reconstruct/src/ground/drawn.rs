@@ -9,10 +9,9 @@ use crate::told::lies::Lies;
 use crate::told::others::Role;
 use crate::told::side::{Turning, size_of};
 use crate::usual::LANE_M;
-use recrash_model::account::{LaneWord, LeftRight, Origin, PlaceKind};
+use recrash_model::account::{LeftRight, Origin, PlaceKind};
 use recrash_model::kinds::PartnerKind;
 use recrash_model::scenario::{GraphMap, RoadStart, Strip, StripKind};
-use recrash_model::template::Movement;
 
 /// The road for an account.
 pub(crate) fn ground_for(told: &Told) -> Ground {
@@ -95,14 +94,6 @@ fn beside_edge(told: &Told, side: LeftRight, lot: bool, oncoming: usize) -> (Vec
 }
 
 impl Told {
-    /// Whether the street is told to be one-way, and nobody of the story is told to be on its other side.
-    fn keeps_one_way(&self) -> bool {
-        let lanes = [self.sv.lane, self.cp.lane];
-        let opposing = self.origin == Origin::Opposite || lanes.contains(&Some(LaneWord::Opposing));
-        let over = [self.sv.movement, self.cp.movement].contains(&Some(Movement::CrossingIntoOpposingLane));
-        self.layout.one_way && !opposing && !over && !has(self, Role::Oncoming)
-    }
-
     /// Whether the partner crosses a street on foot, or as an animal, where no road crosses it.
     fn crosses_street(&self) -> bool {
         matches!(self.cp.kind, PartnerKind::Pedestrian | PartnerKind::Animal) && self.place == PlaceKind::Street

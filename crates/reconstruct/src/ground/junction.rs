@@ -96,19 +96,23 @@ pub(super) fn junction(told: &Told, crossing: bool) -> Ground {
     // Of the partner's road, on both sides of the junction.
     let beside = told.beside_lanes(usual);
     let crosses = matches!(told.origin, Origin::Cross { .. });
-    // Nobody comes towards the ego, which has others parked on its left.
-    let alone = one_way && told.sv.turning == Turning::No && !has(told, Role::Oncoming);
     let along = if crosses { ["left", "right"] } else { ["own", "ahead"] };
+    let usual_strips = |id: &str| if along.contains(&id) { beside.as_slice() } else { usual };
+    // Nobody comes towards an ego that has others parked on its left.
+    let alone = one_way && told.sv.turning == Turning::No && !has(told, Role::Oncoming);
+    // Nor along a one-way street; with who crosses, or a thing, another way may be meant.
+    let told_so = told.keeps_one_way() && told.edge.is_none() && told.thing.is_none() && !crosses;
+    let one_sided = alone || told_so;
     let arm = |id: &str, bearing_deg: f64, length_m: f64| {
         let start = RoadStart::Arm { junction: "j".to_owned(), bearing_deg, from_m: corner_m };
-        let usual = || strips(lanes, if along.contains(&id) { &beside } else { usual });
+        let usual = || strips(lanes, usual_strips(id));
         let (away, towards) = match told.edge.filter(|_| id == exits_by) {
             Some(LeftRight::Right) if id == "own" => (usual(), strips(lanes, &told.beside_edge())),
             Some(LeftRight::Left) if id == "own" => (behind_median(usual()), usual()),
             Some(LeftRight::Right) => (strips(lanes, &told.beside_edge()), usual()),
             Some(LeftRight::Left) => (usual(), behind_median(usual())),
-            None if alone && id == "own" => (strips(0, &beside), usual()),
-            None if alone && id == "ahead" => (usual(), strips(0, &beside)),
+            None if one_sided && id == "own" => (strips(0, usual_strips(id)), usual()),
+            None if one_sided && id == "ahead" => (usual(), strips(0, usual_strips(id))),
             None => (usual(), usual()),
         };
         straight(id, start, length_m, away, towards)
@@ -125,11 +129,12 @@ pub(super) fn junction(told: &Told, crossing: bool) -> Ground {
     };
     // The ego's lane lies on the x axis, or beside it.
     let centre_y = (lanes as f64 - 0.5) * LANE_M;
-    // The first road has to lead away from the junction.
-    let (own, ahead) = (arm("own", 180.0, APPROACH_M), arm("ahead", 0.0, APPROACH_M));
-    let (first, second) = if alone { (ahead, own) } else { (own, ahead) };
+    let [own, ahead] = [arm("own", 180.0, APPROACH_M), arm("ahead", 0.0, APPROACH_M)];
+    let sides = [arm("left", 90.0, APPROACH_M), arm("right", 270.0, APPROACH_M)];
+    // The first road of a map has lanes in its own direction.
+    let along = if one_sided { [ahead, own] } else { [own, ahead] };
     let map = GraphMap {
-        roads: vec![first, second, arm("left", 90.0, APPROACH_M), arm("right", 270.0, APPROACH_M)],
+        roads: along.into_iter().chain(sides).collect(),
         junctions: vec![JunctionSpec {
             id: "j".to_owned(),
             x_m: 0.0,
@@ -202,7 +207,7 @@ pub(super) fn junction(told: &Told, crossing: bool) -> Ground {
         }
     };
     let beside = if crosses { usual.to_vec() } else { beside };
-    let across = Across { lanes, lane, oncoming: if one_way { 0 } else { lanes }, beside };
+    let across = Across { lanes, lane, oncoming: if one_way || one_sided { 0 } else { lanes }, beside };
     let ground = with_way(map, vec!["own-".to_owned(), exit.to_owned()], across, places, true);
     let ground = if at_kerb { ground.at_kerb(told.is_partly_in_lane()) } else { ground };
     if told.sv.turned { ground.after_turn() } else { ground }

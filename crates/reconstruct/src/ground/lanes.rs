@@ -130,6 +130,14 @@ impl Told {
         self.wanted.iter().filter_map(|extra| extra.near).any(|near| near.does == Does::Passes && near.place == left)
     }
 
+    /// Whether the street is told to be one-way, and nobody of the story is told to be on its other side.
+    pub(super) fn keeps_one_way(&self) -> bool {
+        let lanes = [self.sv.lane, self.cp.lane];
+        let opposing = self.origin == Origin::Opposite || lanes.contains(&Some(LaneWord::Opposing));
+        let over = [self.sv.movement, self.cp.movement].contains(&Some(Movement::CrossingIntoOpposingLane));
+        self.layout.one_way && !opposing && !over && !has(self, Role::Oncoming)
+    }
+
     /// Whether another vehicle drives in the lane beside an ego that keeps its own, or comes over from there.
     fn is_beside_other(&self, side: LeftRight) -> bool {
         let along = matches!(self.origin, Origin::Behind | Origin::Ahead | Origin::Beside { .. });

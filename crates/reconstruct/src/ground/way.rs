@@ -55,6 +55,12 @@ impl Ground {
         self.places.clone()
     }
 
+    /// Which road of the map the ego comes along.
+    pub(crate) fn own_road(&self) -> usize {
+        let own = |id: &str| self.route[0].trim_end_matches(['+', '-']) == id;
+        self.map.roads.iter().position(|road| own(&road.id)).unwrap_or(0)
+    }
+
     /// Length of the first road of the way. [m]
     pub(crate) fn first_m(&self) -> f64 {
         if self.junction { APPROACH_M } else { 2.0 * APPROACH_M }

@@ -81,7 +81,7 @@ impl<'a> Scene<'a> {
 
     /// Strips on the right and on the left of the ego's road.
     pub(super) fn sides(&self) -> [&[Strip]; 2] {
-        let road = &self.ground.map.roads[0];
+        let road = &self.ground.map.roads[self.ground.own_road()];
         // The ego goes against the line of a road that is drawn from the junction.
         if self.ground.junction { [&road.left, &road.right] } else { [&road.right, &road.left] }
     }

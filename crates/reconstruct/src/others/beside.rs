@@ -32,7 +32,7 @@ const ACROSS: f64 = 0.7;
 impl Scene<'_> {
     /// Who is parked at the kerb ahead of the ego, on both sides where nobody tells on which; in a lot in a stall.
     pub(super) fn parked(&self, extra: &Extra, length_m: f64) -> Vec<ActorPlan> {
-        let road = &self.ground.map.roads[0];
+        let road = &self.ground.map.roads[self.ground.own_road()];
         // The ego goes against the line of a road that is drawn from the junction.
         let (right, left) = if self.ground.junction { (&road.left, &road.right) } else { (&road.right, &road.left) };
         let is = |strips: &[Strip], kind: StripKind| strips.iter().any(|strip| strip.kind == kind);

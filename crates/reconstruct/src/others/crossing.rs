@@ -128,7 +128,8 @@ impl Scene<'_> {
 
     /// A vehicle that comes towards the ego in its own lane, and passes it.
     pub(super) fn oncoming(&self) -> Option<ActorPlan> {
-        let two_way = self.ground.map.roads[0].left.iter().any(|strip| strip.kind == StripKind::Driving);
+        let two_way =
+            self.ground.map.roads[self.ground.own_road()].left.iter().any(|strip| strip.kind == StripKind::Driving);
         let (step, _) = self.stops();
         let road = self.ground.pose(self.at(step).0.min(self.ground.first_m()), -self.ground.opposing_m);
         let way = Vec2::from_heading(road.heading) * -1.0;

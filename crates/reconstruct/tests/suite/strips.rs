@@ -176,3 +176,19 @@ fn who_is_parked_partly_in_the_lane_stands_on_its_edge() {
     let (partly, wholly) = (beside_m(text), beside_m(&text.replace("partially in-lane at", "at")));
     assert!((0.8..2.0).contains(&partly) && wholly > partly + 1.0, "{partly} m, {wholly} m");
 }
+
+#[test]
+fn a_one_way_street_has_no_lanes_towards_the_ego_at_a_junction() {
+    let shown = made(&story(
+        "The AV was traveling north in the left lane of Elm Street, a one-way street, and came to a stop for a red light at the intersection with Oak Street. A sedan \
+         approached from behind and the front of the sedan made contact with the rear of the stationary AV.",
+    ));
+    let MapSpec::G(map) = &shown.draft.map else { panic!("a graph") };
+    let driving = |strips: &[recrash_model::scenario::Strip]| {
+        strips.iter().filter(|strip| strip.kind == StripKind::Driving).count()
+    };
+    let [own, ahead] = ["own", "ahead"].map(|id| map.roads.iter().find(|road| road.id == id).expect("an arm"));
+    assert_eq!([driving(&own.right), driving(&ahead.left)], [0, 0]);
+    assert!(driving(&own.left) > 0 && driving(&ahead.right) > 0);
+    assert!(shown.draft.control.iter().all(|control| control.at != "ahead-"));
+}
