@@ -253,7 +253,7 @@ pub fn minimal_failures(
         ego: bench.simulator.ego().to_owned(),
         failures,
     };
-    let mut files: Vec<(String, Vec<u8>)> = files.into_iter().flatten().collect();
+    let mut files: Files = files.into_iter().flatten().collect();
     files.push((MINIMAL_FILE.to_owned(), to_json(&report)));
     files.iter().try_for_each(|(name, text)| must_be_absent_or_same(&folder.join(name), text))?;
     let store = Store::create(folder, write_suite_file)?;
@@ -261,12 +261,15 @@ pub fn minimal_failures(
     Ok(report)
 }
 
-/// What a failure needs, and the files that hold it, by name.
+/// Files to write, by name.
+type Files = Vec<(String, Vec<u8>)>;
+
+/// What a failure needs, and the files that hold it.
 fn minimal_of(
     bench: &Bench,
     told: &BTreeMap<&str, &ScenarioDraft>,
     each: &Failing,
-) -> Result<(MinimalOf, Vec<(String, Vec<u8>)>), PipelineError> {
+) -> Result<(MinimalOf, Files), PipelineError> {
     let id = &each.test.id;
     let record = told.get(id.as_str()).copied();
     let found = minimal(each.scenario.draft(), record, &bench.simulator, bench.profile())?;

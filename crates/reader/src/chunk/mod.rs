@@ -4,6 +4,7 @@ mod behind;
 mod noun;
 mod piece;
 mod places;
+mod town;
 mod verb;
 
 pub use noun::is_of_traffic;

@@ -1,7 +1,7 @@
 //! Signals and signs in front of somebody, as the words tell them.
 
 use super::Reading;
-use super::acts::not_done;
+use super::undone::not_done;
 use crate::frame::Frame;
 use crate::lexicon::{Form, Relation, Sense};
 use crate::world::{Actor, SUBJECT};

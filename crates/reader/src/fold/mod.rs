@@ -27,6 +27,7 @@ mod state;
 mod striker;
 mod touched;
 mod types;
+mod undone;
 mod whereabouts;
 
 use crate::chunk::Piece;
