@@ -9,6 +9,7 @@ mod verb;
 
 pub use noun::is_of_traffic;
 pub use piece::is_along_a_side;
+pub use places::bound;
 
 use crate::lexicon::{Adjective, Form, Found, Lexicon, Meaning, Occupant, Part, Relation, Sense};
 use crate::token::{Token, TokenKind};

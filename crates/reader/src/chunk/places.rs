@@ -84,37 +84,41 @@ const fn of_so_many(number: u8, many: Option<u8>) -> Option<LaneWord> {
     }
 }
 
+/// One of eight directions.
+fn direction(word: &str) -> Option<Compass> {
+    Some(match word {
+        "north" => Compass::North,
+        "northeast" => Compass::Northeast,
+        "east" => Compass::East,
+        "southeast" => Compass::Southeast,
+        "south" => Compass::South,
+        "southwest" => Compass::Southwest,
+        "west" => Compass::West,
+        "northwest" => Compass::Northwest,
+        _ => return None,
+    })
+}
+
+/// The way of a road or a side of it: "northbound".
+pub fn bound(word: &str) -> Option<Compass> {
+    word.strip_suffix("bound").and_then(direction)
+}
+
 impl Chunker<'_> {
     /// Whether one of the eight directions stands here alone.
     pub(super) fn compass_word(&self, at: usize) -> bool {
-        matches!(
-            self.text(at),
-            "north" | "northeast" | "east" | "southeast" | "south" | "southwest" | "west" | "northwest"
-        )
+        direction(self.text(at)).is_some()
     }
 
     /// One of eight directions, and its tokens.
     pub(super) fn compass(&self, at: usize) -> Option<(Compass, usize)> {
         let word = self.text(at);
-        let bare = |word: &str| -> Option<Compass> {
-            Some(match word {
-                "north" => Compass::North,
-                "northeast" => Compass::Northeast,
-                "east" => Compass::East,
-                "southeast" => Compass::Southeast,
-                "south" => Compass::South,
-                "southwest" => Compass::Southwest,
-                "west" => Compass::West,
-                "northwest" => Compass::Northwest,
-                _ => return None,
-            })
-        };
         // "going east to west": where it ends.
-        if let (Some(_), "to", Some(end)) = (bare(word), self.text(at + 1), bare(self.text(at + 2))) {
+        if let (Some(_), "to", Some(end)) = (direction(word), self.text(at + 1), direction(self.text(at + 2))) {
             return Some((end, 3));
         }
         let stem = ["bound", "bounds", "erly", "ward", "wards"].into_iter().find_map(|end| word.strip_suffix(end));
-        if let Some(compass) = stem.filter(|stem| !stem.is_empty()).and_then(bare) {
+        if let Some(compass) = stem.and_then(direction) {
             return Some((compass, 1));
         }
         // "n/b": one mark between the two letters.
@@ -136,12 +140,13 @@ impl Chunker<'_> {
             "wb" => return Some((Compass::West, 1)),
             _ => {}
         }
-        let mut compass = bare(word)?;
+        let mut compass = direction(word)?;
         let mut length = 1;
         // "south west bound".
-        if let (Compass::North | Compass::South, Some(second)) =
-            (compass, self.text(at + 1).strip_suffix("bound").and_then(bare).or_else(|| bare(self.text(at + 1))))
-        {
+        if let (Compass::North | Compass::South, Some(second)) = (
+            compass,
+            self.text(at + 1).strip_suffix("bound").and_then(direction).or_else(|| direction(self.text(at + 1))),
+        ) {
             compass = match (compass, second) {
                 (Compass::North, Compass::East) => Compass::Northeast,
                 (Compass::North, Compass::West) => Compass::Northwest,
@@ -506,12 +511,16 @@ impl Chunker<'_> {
             ("parking", "lot" | "garage" | "area" | "structure") => (Spot::Driveway, 2),
             ("stall" | "carport", _) => (Spot::Stall, 1),
             // "out of a construction area", "from a work site": beside the road, where nobody drives through it.
-            (
-                "construction" | "work" | "job" | "building" | "loading" | "staging",
-                "area" | "site" | "yard" | "zone",
-            ) if self.is_come_out_of(at) => (Spot::Driveway, 2),
-            ("jobsite" | "yard" | "depot" | "plaza" | "property" | "farm" | "field" | "barn", _)
+            ("construction" | "work" | "job" | "building" | "loading" | "staging", "area" | "site" | "yard")
                 if self.is_come_out_of(at) =>
+            {
+                (Spot::Driveway, 2)
+            }
+            // Not "the toll plaza", "the field of view".
+            ("jobsite" | "yard" | "depot" | "plaza" | "property" | "farm" | "field" | "barn", next)
+                if self.is_come_out_of(at)
+                    && next != "of"
+                    && !at.checked_sub(1).is_some_and(|at| self.text(at) == "toll") =>
             {
                 (Spot::Driveway, 1)
             }

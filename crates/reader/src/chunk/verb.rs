@@ -426,7 +426,9 @@ impl Chunker<'_> {
         let meanwhile = outer.last().is_some_and(|joint| matches!(joint.chunk, Chunk::Joint(Joint::While))) && !named;
         let relative = clause.iter().any(|placed| matches!(placed.chunk, Chunk::Relative));
         let told = clause.iter().any(|placed| verb(&placed)) || meanwhile && outer.iter().any(|placed| verb(&placed));
-        matches!(self.text(at), "headed" | "bound") && told && !relative
+        // "After leaving a driveway the van headed toward it": that is its verb.
+        let subject = before.last().is_some_and(|placed| matches!(placed.chunk, Chunk::Noun(_) | Chunk::Pronoun));
+        matches!(self.text(at), "headed" | "bound") && told && !relative && !subject
     }
 
     /// The longest verb of the lexicon here that the words behind it allow: "rolled into the roadway" touches nobody.

@@ -587,7 +587,15 @@ fn enters_illegally(reading: &Reading<'_>, frame: &Frame) -> bool {
         matches!(pair[0].text.as_str(), "green" | "red" | "traffic")
             && matches!(pair[1].text.as_str(), "light" | "signal" | "arrow")
     };
+    // "illegally riding on the sidewalk came to the intersection" is none.
+    let behind = tokens[frame.end..].iter().take(3);
+    let goes_in = frame.act() == Some(Act::Enter)
+        || behind.into_iter().any(|token| matches!(token.text.as_str(), "into" | "through"));
+    // "illegally entered from the turn lane to go straight" breaks another rule.
+    let lane = |token: &Token| matches!(token.text.as_str(), "lane" | "lanes");
     frame.who != Some(SUBJECT)
+        && goes_in
+        && !tokens[frame.first..end].iter().any(lane)
         && tokens[near].iter().any(illegal)
         && tokens[frame.first..end].iter().any(place)
         && tokens[..reading.until().min(tokens.len())].windows(2).any(light)
@@ -688,7 +696,9 @@ pub(super) fn sets_off_at_green(reading: &Reading<'_>, number: usize, frame: &Fr
 pub(super) fn leaves_rest(reading: &Reading<'_>, frame: &Frame) -> bool {
     let sentence = reading.story.sentences[frame.sentence];
     let words = &reading.story.tokens[frame.first..sentence.end.min(frame.end + REST_WITHIN)];
-    let mut words = words.iter().map(|token| token.text.as_str());
+    // "was driving as a bus pulled away from a stop": of somebody else.
+    let ends = |word: &&str| matches!(*word, "as" | "when" | "while" | "and" | "after" | "before" | "until" | ",");
+    let mut words = words.iter().map(|token| token.text.as_str()).take_while(|word| !ends(word));
     let from = words.any(|word| word == "from");
     let says_how = |word: &&str| matches!(*word, "a" | "an" | "its" | "the" | "complete" | "full" | "dead");
     let mut rest = words.skip_while(says_how);

@@ -3,7 +3,7 @@
 use super::Reading;
 use super::undone::not_done;
 use crate::frame::Frame;
-use crate::lexicon::{Form, Relation, Sense};
+use crate::lexicon::{Form, Lexicon, Meaning, Relation, Sense};
 use crate::world::{Actor, SUBJECT};
 use recrash_model::account::{Act, Control, ControlDevice, Fact, Obeyed, SignalState};
 
@@ -64,11 +64,13 @@ pub(super) fn controls(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<Control>
                 ControlDevice::Signal => ran == Some(Act::RunRed),
                 _ => ran == Some(Act::RunStop),
             };
+            // "was slowing for a red light", and did not go on into the junction.
+            let slows =
+                || ran == Some(Act::Slow) && state == Some(SignalState::Red) && !goes_in(reading, actor, number);
             let obeyed = if broken {
                 Some(Obeyed::No)
-            // "was slowing for a red light".
             } else if ran.is_some_and(|act| matches!(act, Act::Stop | Act::Hold)) && state != Some(SignalState::Green)
-                || ran == Some(Act::Slow) && state == Some(SignalState::Red)
+                || slows()
             {
                 Some(Obeyed::Yes)
             } else {
@@ -102,6 +104,15 @@ pub(super) fn controls(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<Control>
         all.push(reading.told(Control { device: ControlDevice::Signal, state: Some(state), obeyed: None }, first, end));
     }
     all
+}
+
+/// "slowed for a red light but did not stop and entered the intersection": what it does behind this frame.
+fn goes_in(reading: &Reading<'_>, actor: Actor, number: usize) -> bool {
+    let goes = |frame: &Frame| {
+        let runs = matches!(frame.act(), Some(Act::RunRed | Act::Enter | Act::Cross | Act::Turn | Act::Accelerate));
+        runs && frame.happened() || not_done(reading, number, frame) == Some(Act::RunRed)
+    };
+    reading.before(actor).any(|(later, frame)| later > number && goes(frame))
 }
 
 /// "in a line of vehicles held by the red light", "stopped behind cars waiting at it": the light of those in whose queue somebody stands is its
@@ -174,7 +185,12 @@ fn was_at_a_sign(reading: &Reading<'_>, all: &mut Vec<Fact<Control>>) {
         let last = before().next_back().map(|(_, frame)| frame);
         let stood = |frame: &Frame| matches!(frame.act(), Some(Act::Hold | Act::Stop)) && frame.happened();
         let own = last.filter(|frame| frame.who == Some(SUBJECT) && stood(frame));
-        let was = own.is_some_and(|frame| (frame.end..at).any(|at| word(at) == "was"));
+        // "stopped behind a van which was at the stop sign", "stopped and a van was at the sign": that was.
+        let other = |at: usize| {
+            let vehicle = |meaning: Meaning| matches!(meaning, Meaning::Kind(_));
+            matches!(word(at), "which" | "that" | "who") || Lexicon::get().longest(&story.tokens, at, vehicle).is_some()
+        };
+        let was = own.is_some_and(|frame| (frame.end..at).any(|at| word(at) == "was") && !(frame.end..at).any(other));
         if there && was && !covered && all.iter().all(|known| known.value.device != device) {
             all.push(reading.told(Control { device, state, obeyed: Some(Obeyed::Yes) }, at, at + length));
         }

@@ -37,25 +37,24 @@ pub(super) fn enters_a_lane(reading: &Reading<'_>, number: usize, frame: &Frame)
     let own = |actor: usize| reading.story.world.actors[actor].heading.map(|(heading, ..)| heading);
     let same_way = own(who).zip(own(SUBJECT)).is_none_or(|(one, other)| one == other);
     let drove = match owned {
-        true => {
-            same_way && (before().any(drifts) || placed && (before().any(came) || comes_over(reading, frame, lane)))
-        }
+        true => same_way && (before().any(drifts) || placed && (before().any(came) || comes_over(reading, lane))),
         false => before().any(came) || placed && who != SUBJECT,
     };
     wheels && !turns && !words.iter().any(oncoming) && drove && frame.out_of.is_none() && !before().any(elsewhere)
 }
 
 /// "entered into the AV's lane from the right", on a road of which no junction is told: out of the lane there.
-fn comes_over(reading: &Reading<'_>, frame: &Frame, lane: usize) -> bool {
+fn comes_over(reading: &Reading<'_>, lane: usize) -> bool {
     let tokens = &reading.story.tokens;
     let from = lane + 1 + 2 * usize::from(tokens.get(lane + 2).is_some_and(|next| next.text == "travel"));
     let words: Vec<&str> = tokens[from.min(tokens.len())..].iter().take(4).map(|token| token.text.as_str()).collect();
     let side =
         matches!(words.as_slice(), ["from", "the" | "its", "left" | "right", next] if !matches!(*next, "side" | "of"));
-    let before = &tokens[reading.story.sentences[0].first..frame.first];
-    let road =
-        |word: &str| matches!(word, "intersection" | "junction" | "sign" | "driveway" | "lot" | "alley" | "curb");
-    side && !before.iter().any(|token| road(&token.text))
+    let road = |word: &str| {
+        let junction = matches!(word, "intersection" | "junction" | "sign" | "light" | "signal");
+        junction || matches!(word, "driveway" | "lot" | "alley" | "curb")
+    };
+    side && !tokens[..reading.until().min(tokens.len())].iter().any(|token| road(&token.text))
 }
 
 /// "A van entered the left lane of Elm Street", "left the kerb, and as it was entering the right lane": it came onto the road there, out of no

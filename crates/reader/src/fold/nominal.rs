@@ -84,7 +84,10 @@ fn left_off(reading: &Reading<'_>, at: usize) -> Option<(Range<usize>, Option<Le
     let clause: Vec<usize> = clause.collect();
     let turn = clause.iter().copied().find(|&at| word(at) == "turn")?;
     let end = clause.iter().copied().find(|&at| ends(at))?;
-    let whose = clause.iter().any(|&at| matches!(word(at), "the" | "its" | "that" | "this"));
+    // "before a truck could complete its left turn": that one's.
+    let other = |at: usize| Lexicon::get().longest(tokens, at, |meaning| matches!(meaning, Meaning::Kind(_))).is_some();
+    let whose =
+        clause.iter().any(|&at| matches!(word(at), "the" | "its" | "that" | "this")) && !(at + 1..turn).any(other);
     let side = |at: usize| match word(at) {
         "left" => Some(LeftRight::Left),
         "right" => Some(LeftRight::Right),

@@ -8,6 +8,7 @@ use super::speeds::speeds;
 use super::standing::{reasons, state};
 use super::state::{partner_state, sv_speed, sv_state};
 use super::touched::{by_trailer, zones};
+use crate::chunk::bound;
 use crate::frame::Frame;
 use crate::lexicon::{Relation, Sense};
 use crate::world::{Actor, SUBJECT, is_no_passenger_vehicle};
@@ -136,16 +137,7 @@ fn after(reading: &Reading<'_>, actor: Actor) -> Option<Fact<Compass>> {
 fn by_way_of(reading: &Reading<'_>, end: usize) -> Option<(Way, Way)> {
     let story = &reading.story;
     let word = |at: usize| story.tokens.get(at).map_or("", |token| token.text.as_str());
-    let compass = |at: usize| {
-        let compass = match word(at).strip_suffix("bound")? {
-            "north" => Compass::North,
-            "east" => Compass::East,
-            "south" => Compass::South,
-            "west" => Compass::West,
-            _ => return None,
-        };
-        Some((compass, at, at + 1))
-    };
+    let compass = |at: usize| bound(word(at)).map(|compass| (compass, at, at + 1));
     let sentence = story.sentences.iter().find(|sentence| (sentence.first..sentence.end).contains(&end))?;
     let via = (end..sentence.end).find(|&at| word(at) == "via")?;
     let to = (end..via).find(|&at| matches!(word(at), "to" | "onto"))?;

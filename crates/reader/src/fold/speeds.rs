@@ -4,7 +4,7 @@ use super::Reading;
 use crate::frame::Frame;
 use crate::lexicon::{Adjective, Form, Meaning, Sense};
 use crate::token::{Token, TokenKind};
-use crate::world::{Actor, SUBJECT};
+use crate::world::{Actor, SUBJECT, same_kind};
 use recrash_model::account::{Act, Fact, Kind, Speed, SpeedMeaning};
 use recrash_model::record::MPS_PER_MPH;
 
@@ -124,10 +124,17 @@ fn owner_of_speed(reading: &Reading<'_>, first: usize, at: usize) -> Option<(Act
     let owner = match named.meaning {
         Meaning::Subject | Meaning::Company => Some(SUBJECT),
         Meaning::Kind(Kind::Vehicle) if !numbered() => None,
-        Meaning::Adjective(Adjective::Other | Adjective::Another) | Meaning::Kind(_) => reading.contacts.partner,
+        Meaning::Adjective(Adjective::Other | Adjective::Another) => reading.contacts.partner,
+        // "the speed of the bus ahead", of whom the van struck: not the van's.
+        Meaning::Kind(said) => {
+            let fits = |who: &Actor| reading.story.world.actors[*who].kind.is_none_or(|known| same_kind(known, said));
+            reading.contacts.partner.filter(fits)
+        }
         _ => None,
     }?;
-    Some((owner, word(noun) != "speed"))
+    // "upon impact from the van the AV was traveling at 20 mph": the verb says whose.
+    let within = |frame: &Frame| frame.first > noun && frame.first < at && frame.who.is_some_and(|who| who != owner);
+    (!reading.story.frames.iter().any(within)).then_some((owner, word(noun) != "speed"))
 }
 
 /// Whose speed it is stands so near before the number. [tokens]

@@ -168,6 +168,8 @@ impl Told {
             // "reversed and maneuvered to the right": backwards.
             Act::Drift | Act::Swerve | Act::Park | Act::LaneChange
                 if self.state() == Some(ContactState::Reversing)
+                    // "backed out and then merged into the lane": forward again.
+                    && (act != Act::LaneChange || frame.form == Form::Ing)
                     && self.since.is_some_and(|(sentence, _)| sentence == frame.sentence) =>
             {
                 return None;

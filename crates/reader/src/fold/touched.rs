@@ -166,8 +166,19 @@ pub(super) fn keep_damaged_side(reading: &Reading<'_>, zones: &mut Vec<Fact<Cont
     let corner = |zone: Z| matches!(zone, Z::FrontLeft | Z::FrontRight | Z::RearLeft | Z::RearRight);
     let wrong = |fact: &Fact<Z>| corner(fact.value) && if left { on_right(fact.value) } else { on_left(fact.value) };
     if left != right && !zones.is_empty() && zones.iter().all(|fact| ticked(fact) && wrong(fact)) {
+        let end = |front: bool| {
+            words.iter().any(|word| if front { *word == "front" } else { matches!(*word, "rear" | "back") })
+        };
+        let door = words.iter().any(|word| word.starts_with("door"));
         for fact in zones {
-            *fact = Fact { value: mirrored(fact.value), source: reading.of(damage) };
+            let fronted = matches!(fact.value, Z::FrontLeft | Z::FrontRight);
+            // "the left rear door", of the right front corner in the column: the words tell a side alone.
+            let value = match (left, door || end(!fronted) && !end(fronted)) {
+                (_, false) => mirrored(fact.value),
+                (true, true) => Z::Left,
+                (false, true) => Z::Right,
+            };
+            *fact = Fact { value, source: reading.of(damage) };
         }
     }
 }

@@ -1,7 +1,8 @@
 //! Where others than the two are, seen from the subject vehicle.
 
 use super::Reading;
-use super::origin::{Clues, bound, comes_against, first_relation, side_named_at, side_of_lane, side_of_road_of};
+use super::origin::{Clues, comes_against, first_relation, side_named_at, side_of_lane, side_of_road_of};
+use crate::chunk::bound;
 use crate::frame::{Frame, zone_of};
 use crate::lexicon::{Form, Relation, Sense};
 use crate::world::{Actor, SUBJECT};

@@ -146,6 +146,15 @@ fn reach_into(tokens: &mut [Token], at: usize) {
         leads && matches!(word(tokens, at), "its" | "the") && part(at + 1)
     };
     let Some(whose) = (at.saturating_sub(REACHES_WITHIN).max(1)..at.saturating_sub(1)).rfind(named) else { return };
+    // "with the rear of the bus partly in the lane" tells of that.
+    let own = |of: usize| {
+        let article = usize::from(matches!(word(tokens, of + 1), "the" | "its"));
+        let subject = |meaning: Meaning| matches!(meaning, Meaning::Subject | Meaning::Company);
+        Lexicon::get().longest(tokens, of + 1 + article, subject).is_some()
+    };
+    if (whose..at).filter(|&at| word(tokens, at) == "of").any(|of| !own(of)) {
+        return;
+    }
     let lead = word(tokens, whose - 1);
     let plain = |token: &Token| token.kind != TokenKind::Mark && !token.text.ends_with("ing") && token.text != "was";
     if !tokens[whose..at].iter().all(plain) {

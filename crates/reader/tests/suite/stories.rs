@@ -4,10 +4,11 @@
 //! `places.toml`, their words and places.
 
 use crate::common::{self, account_of, facts};
-use recrash_model::account::{Act, Source};
+use recrash_model::account::{Act, Obeyed, Source};
 use recrash_model::kinds::PartnerKind;
 use recrash_model::record::Coded;
 use recrash_model::template::Movement;
+use recrash_model::zones::ContactZone;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 
@@ -321,4 +322,35 @@ fn who_stops_for_traffic_stands_in_its_lane_whatever_the_column_says() {
     let plain =
         "The AV was stopped on Elm Street. The left side of a dump truck made contact with the left side of the AV.";
     assert_eq!(beside_columns(plain, PartnerKind::HeavyTruck, Some(Movement::Parked))["sv_state"], "parked");
+}
+
+/// Whether the subject vehicle is told to have obeyed the first signal or sign before it.
+fn obeyed(text: &str) -> Option<Obeyed> {
+    account_of(text).expect("an account").sv.controls.first().and_then(|control| control.value.obeyed)
+}
+
+#[test]
+fn who_slows_for_a_red_light_and_goes_on_is_not_told_to_have_obeyed_it() {
+    let stays = "The AV was slowing for a red light when a sedan made contact with the rear of the AV.";
+    assert_eq!(obeyed(stays), Some(Obeyed::Yes));
+    for goes in [
+        "The AV slowed for a red light, then accelerated and ran the light. Its front made contact with the left side of a van.",
+        "The AV slowed for a red light but did not come to a stop and entered the intersection, where a van made contact with its left side.",
+    ] {
+        assert_ne!(obeyed(goes), Some(Obeyed::Yes), "{goes}");
+    }
+}
+
+#[test]
+fn damage_to_one_side_says_no_more_than_that_against_the_other_corner_of_the_column() {
+    let zones = |words: &str| {
+        let text =
+            format!("The AV was driving when a van made contact with the AV, causing damage to {words} of the AV.");
+        let mut record = common::record("1-1", 1, &text);
+        record.sv_zones = vec![ContactZone::FrontRight];
+        facts(&recrash_reader::account(&recrash_reader::incidents(&[record])[0]).expect("an account"))["sv_zones"]
+            .clone()
+    };
+    assert_eq!(zones("the left rear door"), "left");
+    assert_eq!(zones("the left fender"), "front_left");
 }

@@ -1,6 +1,7 @@
 //! What the words say of the place that somebody comes from: a kerb, a stall, a side street, a side of the road.
 
 use super::relation_to;
+use crate::chunk::bound;
 use crate::fold::Reading;
 use crate::fold::types::turning;
 use crate::frame::Frame;
@@ -54,21 +55,6 @@ pub(crate) fn side_named_at(reading: &Reading<'_>, at: usize, own: Option<Compas
         },
         _ => None,
     }
-}
-
-/// The way of a road or a side of it: "northbound".
-pub(crate) fn bound(word: &str) -> Option<Compass> {
-    Some(match word.strip_suffix("bound")? {
-        "north" => Compass::North,
-        "northeast" => Compass::Northeast,
-        "east" => Compass::East,
-        "southeast" => Compass::Southeast,
-        "south" => Compass::South,
-        "southwest" => Compass::Southwest,
-        "west" => Compass::West,
-        "northwest" => Compass::Northwest,
-        _ => return None,
-    })
 }
 
 /// "a van facing west on eastbound Elm Street", of who goes west: it is on the other side of the road.

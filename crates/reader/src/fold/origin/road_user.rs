@@ -164,7 +164,12 @@ impl<'a> Case<'a> {
         let other = case.heading.map(|other| other.value.turned(if backs_from { 4 } else { 0 }));
         let turn = own.zip(other).map(|(own, other)| own.eighths_to(other));
         // "southeast on 9th, and southwest on 9th": along one street.
-        let square = matches!(turn, Some(2 | 3 | 5 | 6)) && !backs_from && case.on_one_street();
+        let fronts =
+            |zones: &[Fact<Z>]| zones.iter().any(|fact| matches!(fact.value, Z::Front | Z::FrontLeft | Z::FrontRight));
+        let met = fronts(&account.sv.zones);
+        let unturned = own == account.sv.heading.as_ref().map(|fact| fact.value);
+        let apart = matches!(turn, Some(3 | 5)) || matches!(turn, Some(2 | 6)) && (met || turning(&account.sv));
+        let square = apart && unturned && !backs_from && case.on_one_street();
         case.turn = if square { Some(4) } else { turn };
         Some(case)
     }
