@@ -520,7 +520,7 @@ impl Chunker<'_> {
             ("jobsite" | "yard" | "depot" | "plaza" | "property" | "farm" | "field" | "barn", next)
                 if self.is_come_out_of(at)
                     && next != "of"
-                    && !at.checked_sub(1).is_some_and(|at| self.text(at) == "toll") =>
+                    && at.checked_sub(1).is_none_or(|at| self.text(at) != "toll") =>
             {
                 (Spot::Driveway, 1)
             }

@@ -110,7 +110,7 @@ pub(crate) fn devices(told: &Told, ground: &Ground, ego: &ActorPlan, actors: &[A
         let merges = matches!(told.sv.movement, Some(Movement::ChangingLanes | Movement::Merging)) && !told.enters();
         let drives_on = told.sv.state.stands() && told.sv.turning != Turning::No
             || told.sv.stood_first && said.obeyed == Some(Obeyed::Yes) && told.origin != Origin::Behind && !merges;
-        let stood_there = is_ego && drives_on && said.state == Some(SignalState::Red) && !told.keeps_red();
+        let stood_there = is_ego && drives_on && said.state == Some(SignalState::Red) && told.keeps_red().is_none();
         let state = if stood_there && sets_off_s(ego).is_some() { Some(SignalState::TurnedGreen) } else { said.state };
         // Who turns right, and gives way to crossing traffic, does so at red.
         let crossed = actors.iter().any(|actor| actor.id == Role::Crosser.id());

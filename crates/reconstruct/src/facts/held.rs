@@ -283,6 +283,7 @@ impl<'a> Crash<'a> {
                 road_rad: self.ego_track.states[0].heading,
                 parks_at_kerb: of_partner && self.told.parks_behind(),
                 crosses: of_partner && matches!(self.told.origin, Origin::Cross { .. }),
+                came_along: of_partner && self.told.came_along_there(),
             };
             let slides = of_partner && keeping::slides(track.kind, until_touched(self.rollout, track, time_s));
             let seen = movement::check(side, &way);
@@ -362,7 +363,8 @@ impl<'a> Crash<'a> {
             let (said, track) = (side.control?, track?);
             let of_partner = kind == CheckKind::CpControl;
             let arm = signals::own_arm(self.told, self.scenario).filter(|_| of_partner);
-            let asked = signals::Asked { said, arm, may_at_red: !of_partner && self.told.keeps_red() };
+            let at_red = self.told.keeps_red().filter(|_| !of_partner);
+            let asked = signals::Asked { said, arm, at_red };
             let seen = signals::check(asked, self.scenario, track, self.touch.time_s);
             let beside = of_partner && signals::is_beside_road(self.told);
             Some(held(kind, signals::words(said), if beside { signals::beside_road(seen) } else { seen }))
@@ -377,7 +379,7 @@ impl<'a> Crash<'a> {
         }
         let controlled = |device: ControlDevice| {
             let said = Said { device, state: None, obeyed: Some(Obeyed::Yes) };
-            let asked = signals::Asked { said, arm: None, may_at_red: self.told.keeps_red() };
+            let asked = signals::Asked { said, arm: None, at_red: self.told.keeps_red() };
             signals::check(asked, self.scenario, self.ego_track, self.touch.time_s).0 == CheckResult::Shown
         };
         let holds = |reason: &StandReason| match reason {

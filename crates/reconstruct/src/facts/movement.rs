@@ -3,6 +3,7 @@
 use crate::told::doing::Doing;
 use crate::told::side::{Side, Turning};
 use crate::usual::STANDS_MPS;
+use recrash_model::account::{Act, Obeyed};
 use recrash_model::geometry::Vec2;
 use recrash_model::math;
 use recrash_model::metrics::CheckResult;
@@ -72,6 +73,8 @@ pub(super) struct Way<'a> {
     pub(crate) parks_at_kerb: bool,
     /// It is told to come along a crossing road.
     pub(crate) crosses: bool,
+    /// It is told to have come along before it entered traffic.
+    pub(crate) came_along: bool,
 }
 
 impl Way<'_> {
@@ -255,9 +258,11 @@ pub(super) fn check(side: &Side, way: &Way<'_>) -> Option<(String, CheckResult, 
         }
         Movement::EnteringTraffic => {
             let (words, degrees) = bent();
-            // Who comes along a crossing road enters the ego's straight across.
-            let across = way.crosses && way.slant_deg() >= ACROSS_DEG;
-            let out = way.is_off_lanes(&way.track.states[0]) || way.stood() || across || side.came_along;
+            // Who comes along a crossing road enters the ego's straight across; who pulls out of it does so where it ran its signal or sign.
+            let pulls_out = side.acts.iter().any(|doing| doing.act == Act::PullOut);
+            let pulls_out = pulls_out && side.control.and_then(|said| said.obeyed) != Some(Obeyed::No);
+            let across = way.crosses && way.slant_deg() >= ACROSS_DEG && !pulls_out;
+            let out = way.is_off_lanes(&way.track.states[0]) || way.stood() || across || way.came_along;
             (
                 out && (beside_m.abs() >= LEFT_LINE_M || degrees >= BENDS_DEG || across),
                 format!("{words}, {:.1} m aside", beside_m.abs()),
@@ -315,7 +320,7 @@ pub(super) fn check(side: &Side, way: &Way<'_>) -> Option<(String, CheckResult, 
     let shown = shown && turns && (dodges || !side.dodges);
     let observed = if side.dodges { format!("{observed}, {dodged}") } else { observed };
     let turn = matches!(movement, Movement::LeftTurn | Movement::RightTurn);
-    let later = if turn && side.turns_later && turned.abs() < BEGUN_DEG { ", yet to begin" } else { "" };
+    let later = if turn && side.turns_later { ", or yet to begin" } else { "" };
     Some((word(side) + later, if shown { CheckResult::Shown } else { CheckResult::NotShown }, observed))
 }
 

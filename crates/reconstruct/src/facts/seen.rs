@@ -311,13 +311,13 @@ impl<'a> Seen<'a> {
             let by = ahead_m <= 0.0 && before_m > 0.0 && facing > 2.0;
             by && step >= self.first_step(extra)
                 && (1.5..4.0 * LANE_M).contains(&left_m)
-                && (self.gives_way(step) || self.makes_room(extra) || !extra.awaited)
+                && (self.gives_way(step) || self.makes_room(extra, step) || !extra.awaited)
         })
     }
 
-    /// Whether the ego goes aside to the right for who comes towards it.
-    fn makes_room(&self, extra: &Extra) -> bool {
-        let (first, met) = (&self.ego.states[0], self.ego.states[self.until].position());
+    /// Whether the ego has gone aside to the right for who comes towards it, at a step.
+    fn makes_room(&self, extra: &Extra, step: usize) -> bool {
+        let (first, met) = (&self.ego.states[0], self.ego.states[step.min(self.until)].position());
         let right_m = -Vec2::from_heading(first.heading).cross(met - first.position());
         extra.role == Role::Oncoming && self.told.sv.turning == Turning::No && right_m > ROOM_M
     }

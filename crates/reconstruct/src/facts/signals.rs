@@ -1,7 +1,7 @@
 //! Told signals and signs, held against who drove past them when.
 
 use crate::draft::signals::arm_of;
-use crate::told::crash::Told;
+use crate::told::crash::{AtRed, Told};
 use crate::usual::STANDS_MPS;
 use recrash_model::account::{Control as Said, ControlDevice, Obeyed, Origin, SignalState};
 use recrash_model::geometry::Vec2;
@@ -16,6 +16,9 @@ const JUST_S: f64 = 10.0;
 
 /// Who stands no farther before a line stands at it. [m]
 const AT_LINE_M: f64 = 8.0;
+
+/// Who creeps over a line at red has its front no farther past it. [m]
+const CREEPS_M: f64 = 3.0;
 
 /// Who is no farther before a line comes to it. [m]
 const COMES_TO_M: f64 = 40.0;
@@ -71,17 +74,17 @@ pub(super) fn beside_road((result, observed): (CheckResult, String)) -> (CheckRe
 /// No line of a signal or a sign is on somebody's way.
 const NONE: &str = "none on its way";
 
-/// A told signal or sign; the arm at which it stands, where that is known; and whether who stood there first may come over its line at red.
+/// A told signal or sign; the arm at which it stands, where that is known; and how who stood there at red may come over its line at red.
 pub(super) struct Asked<'a> {
     pub(super) said: Said,
     pub(super) arm: Option<&'a str>,
-    pub(super) may_at_red: bool,
+    pub(super) at_red: Option<AtRed>,
 }
 
 /// Whether a told signal or sign stood before somebody, showed what is told, and was obeyed or not as told. Who came to a stand for a
 /// light that changed did so before it was green.
 pub(super) fn check(
-    Asked { said, arm, may_at_red }: Asked<'_>,
+    Asked { said, arm, at_red }: Asked<'_>,
     scenario: &Scenario,
     track: &ActorTrack,
     contact_s: f64,
@@ -131,8 +134,9 @@ pub(super) fn check(
         Device::StopSign {} => passage.crossed_s.is_none() || passage.stood_s.is_some(),
         Device::YieldSign {} => passage.crossed_s.is_none_or(|at_s| passage.stood_s.is_some() || slowed(track, at_s)),
         Device::Signal { .. } => {
-            let stood_first = may_at_red && passage.stood_s.is_some();
-            stood_first || passage.crossed_s.is_none_or(|at_s| shows(at_s) != Some(Aspect::Red))
+            let at_red = at_red.filter(|_| passage.stood_s.is_some_and(|at_s| shows(at_s) == Some(Aspect::Red)));
+            let may = at_red.is_some_and(|how| how == AtRed::Turns || passage.past_m < CREEPS_M);
+            may || passage.crossed_s.is_none_or(|at_s| shows(at_s) != Some(Aspect::Red))
         }
     };
     let obeyed = match said.obeyed {
@@ -172,6 +176,8 @@ struct Passage {
     stood_s: Option<f64>,
     /// When it came to stand on its way to the line. [s]
     stands_s: Vec<f64>,
+    /// How far its front is past the line at last. [m]
+    past_m: f64,
 }
 
 /// A stop line, and the direction across it.
@@ -202,6 +208,7 @@ fn passage(track: &ActorTrack, line: &Line, until: usize) -> Option<Passage> {
         let share = (point - line.from).dot(along) / (length * length);
         ((0.0..=1.0).contains(&share), (point - line.from).dot(line.ahead))
     };
+    let last_m = on(front(until)).1;
     let mut stood_s = None;
     let mut stands_s = Vec::new();
     for step in 0..=until {
@@ -217,7 +224,7 @@ fn passage(track: &ActorTrack, line: &Line, until: usize) -> Option<Passage> {
         if step > 0 {
             let (was_beside, was_m) = on(front(step - 1));
             if was_m <= 0.0 && past_m > 0.0 && (beside || was_beside) {
-                return Some(Passage { crossed_s: Some(STEP_S * step as f64), stood_s, stands_s });
+                return Some(Passage { crossed_s: Some(STEP_S * step as f64), stood_s, stands_s, past_m: last_m });
             }
         }
     }
@@ -228,5 +235,6 @@ fn passage(track: &ActorTrack, line: &Line, until: usize) -> Option<Passage> {
         crossed_s: None,
         stood_s,
         stands_s,
+        past_m: last_m,
     })
 }

@@ -3,7 +3,7 @@
 use crate::ground::lanes::{has, is_one_way, lanes_for, told_lane, usual_lane};
 use crate::ground::pieces::{APPROACH_M, behind_median, corner_m, straight, strips};
 use crate::ground::way::{Across, Ground, with_way};
-use crate::told::crash::Told;
+use crate::told::crash::{AtRed, Told};
 use crate::told::others::Role;
 use crate::told::side::{Turning, size_of};
 use crate::told::{queue, sizes};
@@ -64,6 +64,9 @@ fn over_line_m(told: &Told) -> f64 {
 
 /// Places of who goes straight on and is told to be in the junction, where nobody crosses it or turns. [m]
 const INSIDE_M: [f64; 3] = [2.5, 7.0, 12.0];
+
+/// The same of who is over its line at red by a little. [m]
+const CREEPS_M: [f64; 2] = [0.4, 0.0];
 
 /// The same of who has come through it, from where it ends. [m]
 const BEYOND_M: [f64; 3] = [4.0, 10.0, 2.0];
@@ -200,6 +203,8 @@ pub(super) fn junction(told: &Told, crossing: bool) -> Ground {
         let before_m = if at_kerb { KERB_BEFORE_M } else { before_m };
         match (told.enters() || told.is_followed_in()) && !at_kerb && told.edge.is_none() {
             true if told.sv.crossed => inside(&BEYOND_M.map(|beyond_m| 2.0 * corner_m + beyond_m)),
+            // No farther than who does not run its red light.
+            true if told.keeps_red() == Some(AtRed::Creeps) => inside(&CREEPS_M),
             true => inside(&INSIDE_M),
             // From its line.
             false if told.sets_off_first() && before_m < USUAL_M => vec![APPROACH_M - over_line_m(told)],

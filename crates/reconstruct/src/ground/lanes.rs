@@ -2,7 +2,7 @@
 
 use crate::told::crash::Told;
 use crate::told::layout::strip_of;
-use crate::told::near::Does;
+use crate::told::near::{Does, Near};
 use crate::told::others::{Extra, Role};
 use crate::told::side::Turning;
 use crate::told::zones::side_of;
@@ -11,9 +11,13 @@ use recrash_model::account::{ContactState, KindGroup, LaneWord, LeftRight, Origi
 use recrash_model::template::Movement;
 use recrash_model::zones::ContactZone;
 
-/// Who is parked on the left, facing as the ego does, is so on a one-way street.
+/// Who is parked on the left, facing as the ego does, is so on a one-way street; not where it is told to face the other way, or somebody comes
+/// towards the ego.
 pub(super) fn is_one_way(told: &Told) -> bool {
-    matches!(told.origin, Origin::Parked { side: Some(LeftRight::Left) }) || told.leaves_left_kerb()
+    let drives = |near: Near| near.place == Some(Origin::Opposite) && near.does != Does::Stands;
+    let oncoming = |extra: &Extra| extra.role == Role::Oncoming || extra.near.is_some_and(drives);
+    let left = matches!(told.origin, Origin::Parked { side: Some(LeftRight::Left) });
+    left && !told.faces && !told.wanted.iter().any(oncoming) || told.leaves_left_kerb()
 }
 
 /// Lanes in the ego's direction: as told, and at least as many as the told lanes need.

@@ -220,11 +220,13 @@ const ROUND_M: [f64; 3] = [2.2, 1.5, 3.0];
 const ROUND_S: f64 = 1.8;
 
 impl Scene<'_> {
-    /// Whether a thing or an animal lies there that the ego meets.
+    /// Whether a thing or an animal lies there that the ego meets: nothing that stands beside the lanes, or across them.
     fn lies_ahead(&self) -> bool {
         let still = |track: &ActorTrack| (0..=self.until).all(|step| track.states[step].speed().abs() < STANDS_MPS);
         let animal = self.told.cp.kind == PartnerKind::Animal && self.partner.is_some_and(still);
-        self.told.thing.is_some() || animal
+        let stands = |kind: Kind| matches!(kind, Kind::Wall | Kind::Curb | Kind::Gate);
+        let lies = self.told.thing.is_some_and(|kind| !stands(kind)) && self.told.edge.is_none();
+        lies || animal
     }
 
     /// Ahead in the ego's lane, and round what lies there, or in a lane beside that.

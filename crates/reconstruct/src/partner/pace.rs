@@ -185,8 +185,8 @@ const LEAST_BACK_M: f64 = 5.0;
 
 /// Whether somebody that enters traffic did so from a stand; not who is told to have come along ahead of the ego, or beside it.
 fn from_stand(told: &Told) -> bool {
-    let along = matches!(told.origin, Origin::Ahead | Origin::Beside { .. }) && told.cp.came_along;
-    !matches!(told.origin, Origin::Cross { .. } | Origin::Behind | Origin::Opposite) && !told.rolls_out() && !along
+    let comes = matches!(told.origin, Origin::Cross { .. } | Origin::Behind | Origin::Opposite);
+    !comes && !told.rolls_out() && !told.came_along_there()
 }
 
 /// Who follows an ego that slows brakes so long after it, for so long at least. [s]

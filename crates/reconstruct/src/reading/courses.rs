@@ -56,11 +56,11 @@ impl Told {
         if self.thing.is_some() && !self.at_entrance && self.sv.movement == Some(Movement::Straight) {
             self.sv.turned = false;
         }
-        // Who comes from a side of an ego that drove straight on after its turn does so from that side of its new road.
-        if self.sv.turned && self.sv.movement == Some(Movement::Straight) && matches!(self.origin, Origin::Cross { .. })
-        {
+        // Who comes from a side of an ego that drove into another junction after its turn does so from that side of its new road: one junction
+        // is drawn, and the turn is not.
+        let crosses = matches!(self.origin, Origin::Cross { .. });
+        if self.sv.turned && self.sv.movement == Some(Movement::Straight) && crosses && enters_after_turn(sv) {
             (self.sv.turning, self.sv.turned) = (Turning::No, false);
-            self.sv.acts.retain(|doing| !doing.is_turn());
         }
         if lies_before_turn(self, sv) {
             (self.sv.turning, self.sv.turns_later) = (Turning::No, true);
@@ -112,6 +112,15 @@ impl Told {
     }
 }
 
+/// Whether somebody is told to have driven into a junction behind its turn: "turned right, and went on through the intersection with Oak Street".
+fn enters_after_turn(party: &Party) -> bool {
+    let before = || party.acts.iter().filter(|fact| !fact.after_contact && !fact.begun);
+    let turn = before().filter(|fact| fact.act == Act::Turn).map(|fact| fact.step).max();
+    let goes = |fact: &ActFact| matches!(fact.act, Act::Enter | Act::Cross | Act::Follow);
+    let junction = |fact: &ActFact| ["intersection", "junction"].iter().any(|word| text(&fact.source).contains(word));
+    turn.is_some() && before().any(|fact| Some(fact.step) > turn && goes(fact) && junction(fact))
+}
+
 /// To which side somebody turned before it stood and reversed.
 fn turned_off(party: &Party) -> Option<LeftRight> {
     let first = |of: fn(Act) -> bool| steps(party, of).into_iter().min();
@@ -121,7 +130,7 @@ fn turned_off(party: &Party) -> Option<LeftRight> {
 }
 
 /// Whether the two are told to have gone in opposite directions.
-fn faces(sv: &Party, partner: &Party) -> bool {
+pub(super) fn faces(sv: &Party, partner: &Party) -> bool {
     let ways = told(&sv.heading).zip(told(&partner.heading));
     ways.is_some_and(|(sv, partner)| (3..=5).contains(&sv.eighths_to(partner)))
 }

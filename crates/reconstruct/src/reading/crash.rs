@@ -4,7 +4,7 @@ use crate::reading::order::{backs_behind, backs_first, slows_behind, stood_befor
 use crate::reading::origin::{self, assumed_origin};
 use crate::reading::side::side;
 use crate::reading::things::{self, POST};
-use crate::reading::{acts, edge, others, trailer};
+use crate::reading::{acts, courses, edge, others, trailer};
 use crate::told::choices::Choices;
 use crate::told::crash::Told;
 use crate::told::layout::Layout;
@@ -73,7 +73,9 @@ impl Told {
         let origin = match comes_round {
             true if origin::leaves_driveway(partner) => Origin::Driveway { side: right },
             true => Origin::Parked { side: right },
-            false => origin::at_left_kerb(origin, &cp, place, thing.is_some() || layout.cp.in_lane).unwrap_or(origin),
+            false => {
+                origin::at_left_kerb(account, (origin, &cp), thing.is_some() || layout.cp.in_lane).unwrap_or(origin)
+            }
         };
         let edge = Some(origin).filter(|_| !gate_swings && account.door.is_none());
         let edge = edge.and_then(|origin| edge::side(account, &sv, &cp, lies, origin));
@@ -126,6 +128,7 @@ impl Told {
             origin,
             origin_told,
             heading_told: partner.heading.is_some(),
+            faces: courses::faces(&account.sv, partner),
             comes_round,
             comes_over: origin::comes_over(origin, partner, movement),
             order,

@@ -38,6 +38,7 @@ impl Layout {
                 || goes_out_left(account, partner),
             left_to_come: goes_to_turn_left(&account.sv),
             arrow: turns_on_arrow(&account.sv),
+            light_changes: light_changes(&account.sv),
             rear_door: rear_door(account, partner),
         }
     }
@@ -110,7 +111,8 @@ fn is_partly_in_lane(fact: &ActFact) -> bool {
     text.ends_with("lane") && PARTLY.iter().any(|word| text.contains(word))
 }
 
-const PARTLY: [&str; 4] = ["partial", "partly", "partway", "halfway"];
+/// Words for one that stands in a lane by a part of it.
+pub(super) const PARTLY: [&str; 4] = ["partial", "partly", "partway", "halfway"];
 
 /// "parked in the travel lane", and not partly there: the reader's words of who stands in a lane end with it.
 fn is_in_lane(fact: &ActFact) -> bool {
@@ -154,8 +156,26 @@ fn turns_on_arrow(party: &Party) -> bool {
         .controls
         .last()
         .is_some_and(|fact| matches!(fact.value.state, Some(SignalState::Green | SignalState::TurnedGreen)));
-    let words = |text: String| text.contains("arrow") || text.contains("protected") && !text.contains("unprotected");
+    let words = |text: String| {
+        let words: Vec<&str> = text.split(|letter: char| !letter.is_alphanumeric()).collect();
+        let alone = |next: &str| matches!(next, "left" | "turn" | "arrow" | "signal" | "phase");
+        text.contains("arrow") || words.windows(2).any(|pair| pair[0] == "protected" && alone(pair[1]))
+    };
     green && texts.map(text).any(words)
+}
+
+/// Whether words tell that somebody's light changed, or that it waited for green: "waiting for the light to turn green".
+fn light_changes(party: &Party) -> bool {
+    let reasons = party.reasons.iter().map(|fact| &fact.source);
+    let standing = party.standing.iter().map(|fact| &fact.source);
+    let controls = party.controls.iter().map(|fact| &fact.source);
+    let acts = party.acts.iter().filter(|fact| !fact.after_contact).map(|fact| &fact.source);
+    let mut texts = reasons.chain(standing).chain(controls).chain(acts).map(text);
+    let turned = party.controls.iter().any(|fact| {
+        matches!(fact.value.state, Some(SignalState::Green | SignalState::TurnedGreen | SignalState::Yellow))
+    });
+    let light = |text: &str| text.contains("light") || text.contains("signal");
+    turned || texts.any(|text| text.contains("green") || light(&text) && text.contains("chang"))
 }
 
 /// So many words before "door" tell which one it is.

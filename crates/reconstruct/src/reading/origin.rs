@@ -1,6 +1,7 @@
 //! From where the partner came, where that is not told in a word.
 
 use crate::reading::order::steps;
+use crate::reading::words::text;
 use crate::told::side::{Side, is_on_foot};
 use crate::told::zones::side_of;
 use recrash_model::account::{
@@ -31,11 +32,20 @@ pub(super) fn passed_beside(account: &Account, sv: &Side) -> Option<Origin> {
     Some(Origin::Beside { side: if touched > 0.0 { LeftRight::Left } else { LeftRight::Right } })
 }
 
-/// Where a partner is that is parked on a street, and comes from the opposite direction by its heading: at the left kerb, and in no lane.
-pub(super) fn at_left_kerb(origin: Origin, cp: &Side, place: PlaceKind, elsewhere: bool) -> Option<Origin> {
+/// Where a partner is that is parked on a street, of which only the opposite side is told: at the left kerb, and in no lane. Who is told to head or
+/// face another way than the ego is not moved there: it would face as the ego does.
+pub(super) fn at_left_kerb(account: &Account, (origin, cp): (Origin, &Side), elsewhere: bool) -> Option<Origin> {
+    let faces =
+        |text: String| ["facing", "faced", "heading", "headed", "oncoming"].iter().any(|word| text.contains(word));
+    let partner = account.partner.as_ref()?;
+    let acts = partner.acts.iter().filter(|fact| !fact.after_contact).map(|fact| &fact.source);
+    let from = account.came_from.iter().map(|fact| &fact.source);
+    let kind = partner.kind.iter().map(|fact| &fact.source);
+    let told_way = partner.heading.is_some() || acts.chain(from).chain(kind).map(text).any(faces);
+    let place = told(&account.place.kind).unwrap_or(PlaceKind::Street);
     let street = matches!(place, PlaceKind::Street | PlaceKind::Intersection | PlaceKind::Other);
     let parked = cp.state == ContactState::Parked && cp.lane.is_none_or(|lane| lane == LaneWord::Curb);
-    let there = origin == Origin::Opposite && street && parked && !elsewhere;
+    let there = origin == Origin::Opposite && street && parked && !elsewhere && !told_way;
     there.then_some(Origin::Parked { side: Some(LeftRight::Left) })
 }
 

@@ -65,13 +65,15 @@ pub(super) fn side(party: &Party, kind: Option<Kind>, assumed: &mut Vec<String>,
         .filter_map(|fact| fact.side)
         .next_back();
     // It stood where it did something after it, or held its place; "was coming to a stop and traveling slowly" tells one thing twice.
-    let does = |fact: &&ActFact| !fact.after_contact && fact.act != Act::Follow;
-    let last = party.acts.iter().filter(does).map(|fact| fact.step).max();
+    let does_more = |stop: &ActFact| {
+        let tells_twice = |later: &ActFact| later.act == Act::Follow && is_under_way(stop);
+        party.acts.iter().any(|later| !later.after_contact && later.step > stop.step && !tells_twice(later))
+    };
     let stood_first = state == ContactState::Moving
         && party.acts.iter().any(|fact| {
             let stands = match fact.act {
                 Act::Hold | Act::SetOff => true,
-                Act::Stop => Some(fact.step) < last,
+                Act::Stop => does_more(fact),
                 _ => false,
             };
             stands && !fact.after_contact && !fact.begun
@@ -162,6 +164,12 @@ pub(super) fn side(party: &Party, kind: Option<Kind>, assumed: &mut Vec<String>,
         lane_to_come: party.lane.as_ref().is_some_and(|fact| goes_there(&fact.source)),
         control: control(party),
     }
+}
+
+/// Whether a stop is told on its way, and not as done: "was coming to a stop", "was stopping".
+fn is_under_way(stop: &ActFact) -> bool {
+    let text = words::text(&stop.source);
+    text.split(|letter: char| !letter.is_alphanumeric()).any(|word| matches!(word, "coming" | "stopping" | "braking"))
 }
 
 /// How fast somebody is told to have driven last, since it stood; who moved slowly where no word of it stands with the last that it did

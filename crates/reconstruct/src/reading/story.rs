@@ -1,5 +1,7 @@
 //! What the words tell of somebody else: whether the ego acted for it, where it is, and what it is to the ego.
 
+use crate::reading::layout::PARTLY;
+use crate::reading::turns::leaves_line;
 use crate::reading::words::{before_contact, span, text};
 use crate::told::crash::Told;
 use crate::told::others::Role;
@@ -28,17 +30,6 @@ pub(super) fn is_parked(other: &Other) -> bool {
     text(&other.kind.source).contains("parked") || before_contact(other).any(|fact| text(&fact.source).contains("park"))
 }
 
-/// Whether one that is parked is not in the way of an ego that goes round something: it is parked on the side to which that goes, or the
-/// ego keeps its lane, and the partner is beside that.
-fn keeps_to_kerb(told: &Told, place: Option<Origin>) -> bool {
-    let side = match place {
-        Some(Origin::Beside { side } | Origin::Parked { side: Some(side) }) => Some(side),
-        _ => None,
-    };
-    let beside = matches!(told.origin, Origin::Beside { .. } | Origin::Parked { side: Some(_) });
-    side.is_some() && side == told.sv.aside || told.sv_aside().is_none() && told.thing.is_none() && beside
-}
-
 /// Whether somebody in the lane beside the ego changes lanes towards it: "a car in the lane to its right changed lanes to the left".
 fn comes_in(other: &Other) -> bool {
     let next =
@@ -55,7 +46,9 @@ fn cuts_in(other: &Other) -> bool {
     let into = |fact: &ActFact| {
         let words = text(&fact.source);
         let says = |of: &[&str]| of.iter().any(|word| words.contains(word));
-        fact.act == Act::LaneChange && says(&["cut", "in front of", "ahead of"])
+        let mut each = words.split(|letter: char| !letter.is_alphanumeric());
+        let cuts = each.any(|word| matches!(word, "cut" | "cuts" | "cutting"));
+        fact.act == Act::LaneChange && (cuts || says(&["in front of", "ahead of"]))
             || fact.act == Act::Drift && says(&["encroach"])
     };
     before_contact(other).any(into)
@@ -64,9 +57,13 @@ fn cuts_in(other: &Other) -> bool {
 /// Words for one that stands in a lane.
 const IN_LANE: [&str; 6] = ["in-lane", "in lane", "in the lane", "in its lane", "double-parked", "double parked"];
 
-/// Whether somebody is told to stand in a lane: at no kerb.
+/// Whether somebody is told to stand in a lane, and not partly there: at no kerb.
 pub(super) fn stands_in_lane(other: &Other) -> bool {
-    before_contact(other).any(|fact| IN_LANE.iter().any(|words| text(&fact.source).contains(words)))
+    before_contact(other).any(|fact| {
+        let words = text(&fact.source);
+        let says = |of: &[&str]| of.iter().any(|word| words.contains(word));
+        says(&IN_LANE) && !says(&PARTLY)
+    })
 }
 
 /// Whether the ego stands on though its light has turned green, and lets in who comes from beside the road: the queue ahead, of which no
@@ -292,6 +289,23 @@ impl Story<'_> {
         self.account.sv.acts.iter().filter(passes).find(of).map(|fact| fact.step)
     }
 
+    /// Whether one that is parked is not in the way of an ego that goes round something: it is parked on the side to which that goes first, and
+    /// not told to be passed, or the ego keeps its lane, nor is told to go round it, and the partner is beside that.
+    fn keeps_to_kerb(&self, told: &Told, other: &Other, place: Option<Origin>) -> bool {
+        let side = match place {
+            Some(Origin::Beside { side } | Origin::Parked { side: Some(side) }) => Some(side),
+            _ => None,
+        };
+        let aside = |fact: &&ActFact| leaves_line(fact.act) && !fact.after_contact;
+        let first = self.account.sv.acts.iter().filter(aside).find_map(|fact| fact.side).or(told.sv.aside);
+        let beside = matches!(told.origin, Origin::Beside { .. } | Origin::Parked { side: Some(_) });
+        let keeps = told.sv_aside().is_none() && told.thing.is_none() && beside;
+        let passed = self.passes_at(other);
+        let round = |fact: &ActFact| fact.act == Act::Pass && text(&fact.source).contains("around");
+        let goes_round = passed.is_some() && self.account.sv.acts.iter().any(round);
+        passed.is_none() && side.is_some() && side == first || keeps && !goes_round
+    }
+
     /// Whether the ego has passed somebody, and is told to have come back into its lane then.
     pub(super) fn is_back(&self, other: &Other) -> bool {
         let Some(passed) = self.passes_at(other) else { return false };
@@ -367,7 +381,7 @@ impl Story<'_> {
             let named_before = double && place.is_none() && self.is_named_before(other);
             let blocks = near && (waits || double) || named_before;
             let round = goes_round(told) && told.thing.is_none_or(|thing| thing != other.kind.value);
-            return match (other.several, round && !keeps_to_kerb(told, place)) {
+            return match (other.several, round && !self.keeps_to_kerb(told, other, place)) {
                 (true, _) => Some(Role::Kerb),
                 (false, true) => Some(Role::Obstacle),
                 (false, false) if blocks => Some(Role::Lead),

@@ -41,7 +41,8 @@ fn held_again(found: Found, asked: &Told) -> Found {
     Found { made: Reconstruction { verdict: Verdict { checks }, ..found.made }, strays: found.strays }
 }
 
-/// The same, of which one is taken at another time that shows more of what the two did, and no less else.
+/// The same, of which one is taken at another time that shows more of what the two did, and no less else. Where a light alone is shown otherwise,
+/// the first that shows it too is taken, whatever it leaves open.
 fn in_order(told: Told, account: &Account, most_runs: usize) -> Result<Found, Untold> {
     let (told, mut best) = near_or_far(told, account, most_runs)?;
     if !is_true_but_for_signals(&best.made) {

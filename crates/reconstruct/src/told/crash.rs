@@ -15,6 +15,13 @@ use recrash_model::metrics::CheckKind;
 use recrash_model::narrative::FirstMover;
 use recrash_model::template::Movement;
 
+/// How somebody that stood at a red light came over its line, and did not run it: to turn right, or by a little.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum AtRed {
+    Turns,
+    Creeps,
+}
+
 /// An account, in the terms of a staging.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Told {
@@ -48,6 +55,8 @@ pub(crate) struct Told {
     pub(crate) origin_told: bool,
     /// It is told in which direction the partner went.
     pub(crate) heading_told: bool,
+    /// It is told to have gone, or faced, against the ego's way.
+    pub(crate) faces: bool,
     /// The partner came from the kerb behind the ego, round it.
     pub(crate) comes_round: bool,
     /// An oncoming partner left its own side.
@@ -179,14 +188,26 @@ impl Told {
         touch.is_some_and(|touch| touch.by_partner && touch.of_partner.is_some_and(|zone| !zone.is_rear()))
     }
 
-    /// Whether an ego that stood at a red light is told to have come over its line without running it: to turn right, or by a little, to stand
-    /// again.
-    pub(crate) fn keeps_red(&self) -> bool {
-        let red = |said: Control| said.state == Some(SignalState::Red) && said.obeyed != Some(Obeyed::No);
+    /// How an ego that stood at a red light may have come over its line without running it: to turn right, where it came to a stand in its turn and
+    /// nothing tells that the light changed, or that it waited for that; or by a little, to stand again. Of who drives on in its turn an account
+    /// holds no words for a light that "changed": it may have waited for that.
+    pub(crate) fn keeps_red(&self) -> Option<AtRed> {
+        let red = |said: &Control| said.state == Some(SignalState::Red) && said.obeyed != Some(Obeyed::No);
         let moved_up = self.sv.phases.ends_with(&[Phase::Stands, Phase::Drives, Phase::Stands]);
         let creeps = self.sv.enters() && moved_up && self.sv.turning == Turning::No;
-        let turns = self.sv.turning == Turning::Right && !self.sv.turns_later;
-        self.sv.control.is_some_and(red) && (turns || creeps)
+        let right = self.sv.turning == Turning::Right && !self.sv.turns_later;
+        let turns = right && self.sv.state.stands() && !self.layout.light_changes;
+        let how = match (turns, creeps) {
+            (true, _) => Some(AtRed::Turns),
+            (_, true) => Some(AtRed::Creeps),
+            _ => None,
+        };
+        how.filter(|_| self.sv.control.as_ref().is_some_and(red))
+    }
+
+    /// Whether a partner that enters traffic ahead of the ego, or beside it, is told to have come along there, and not to have stood.
+    pub(crate) fn came_along_there(&self) -> bool {
+        matches!(self.origin, Origin::Ahead | Origin::Beside { .. }) && self.cp.came_along
     }
 
     /// Which lane of its road one of the two is told to be in, counted from a side.

@@ -209,3 +209,16 @@ fn who_is_to_turn_where_it_touches_a_standing_ego_has_begun_to() {
     assert!(turned_deg(ContactZone::RearRight) > 5.0, "{}", turned_deg(ContactZone::RearRight));
     assert!(turned_deg(ContactZone::Rear).abs() < 5.0, "{}", turned_deg(ContactZone::Rear));
 }
+
+#[test]
+fn an_ego_that_drove_straight_on_after_its_turn_has_turned_whoever_crosses_its_way() {
+    let shown = made(&story(
+        "The AV made a left turn at the intersection and was proceeding straight when a sedan coming from the right ran a red light and the \
+         front of the sedan made contact with the right side of the AV.",
+    ));
+    assert!(shown.missed().is_none(), "{:?}", shown.missed());
+    let turned_deg =
+        math::wrap_angle(ego(&shown)[before_contact(&shown)].heading - ego(&shown)[0].heading).to_degrees();
+    assert!(turned_deg > 50.0, "{turned_deg}");
+    assert!(shown.verdict.checks.iter().any(|check| check.kind == CheckKind::SvActs), "{:?}", shown.verdict);
+}

@@ -5,7 +5,7 @@ use crate::ways::{before_contact, made, speeds};
 use recrash_model::kinds::PartnerKind;
 use recrash_model::metrics::{Check, CheckKind, CheckResult};
 use recrash_model::scenario::{Aspect, Device};
-use recrash_reconstruct::{Reconstruction, held_against};
+use recrash_reconstruct::{Reconstruction, held_against, reconstruct};
 use recrash_sim::{Ego, simulate};
 
 const TURNED_GREEN: &str = "The AV was traveling north on Elm Street and came to a stop at a red light at the intersection with Oak Street. The light turned \
@@ -167,4 +167,21 @@ fn who_turns_left_on_an_arrow_has_red_ahead_of_it() {
     };
     assert_eq!(ahead(text), Some(Aspect::Red));
     assert_eq!(ahead(&text.replace("green arrow", "green light")), Some(Aspect::Green));
+}
+
+const INTO_THE_JUNCTION: &str = "The AV was stopped at a red light at the intersection of Elm Street and Oak Street. The AV then drove straight into the intersection \
+                                 and stopped in the intersection for a pedestrian. A sedan coming from the right struck the right side of the AV with its front.";
+
+const RIGHT_AT_GREEN: &str = "The AV was stopped at a red light. After the light changed, the AV began turning right when a sedan approached from behind and the front of \
+                              the sedan made contact with the rear of the AV.";
+
+#[test]
+fn who_drives_far_over_its_line_at_red_or_turned_right_as_it_changed_has_not_kept_red() {
+    let far = reconstruct(&told(INTO_THE_JUNCTION)).expect("it can be staged");
+    let crossed = fact(&far, CheckKind::SvControl).observed.contains("crossed");
+    assert!(!crossed || fact(&far, CheckKind::SvControl).result == CheckResult::NotShown, "{:?}", far.verdict);
+    let green = reconstruct(&told(RIGHT_AT_GREEN)).expect("it can be staged");
+    let light = fact(&green, CheckKind::SvControl);
+    let at_green = shows(&green, 0.1 * before_contact(&green) as f64) == Some(Aspect::Green);
+    assert!(at_green || light.result == CheckResult::NotShown, "{light:?}");
 }

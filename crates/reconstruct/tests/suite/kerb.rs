@@ -5,7 +5,7 @@ use recrash_model::account::{Fact, LeftRight, Origin};
 use recrash_model::metrics::{CheckKind, CheckResult};
 use recrash_model::rollout::ActorTrack;
 use recrash_model::scenario::{MapSpec, StripKind};
-use recrash_reconstruct::Reconstruction;
+use recrash_reconstruct::{Reconstruction, reconstruct};
 
 const PASSED: &str = "The AV was parked at the curb on Elm Street when a van traveling west passed the parked AV on the left and the right side of \
                       the van made contact with the rear left of the AV.";
@@ -148,4 +148,15 @@ fn who_comes_towards_a_standing_ego_in_a_narrow_street_comes_along_its_middle() 
     };
     let wide = NARROW.replace("a narrow street", "Elm Street");
     assert!(most_deg(NARROW) < 8.0 && most_deg(NARROW) < most_deg(&wide), "{} {}", most_deg(NARROW), most_deg(&wide));
+}
+
+const AGAINST: &str = "The AV was traveling eastbound on Elm Street and a parked westbound sedan was on the other side of the street. The AV drifted to the left and \
+                       the front left of the AV made contact with the front left of the sedan.";
+
+#[test]
+fn who_is_told_to_be_parked_against_the_egos_way_does_not_face_as_it_does() {
+    let made = reconstruct(&story(AGAINST)).expect("it can be staged");
+    let facing = made.rollout.ego_track().states[0].heading - partner(&made).states[0].heading;
+    let against = recrash_model::math::wrap_angle(facing).abs() > 2.0;
+    assert!((against && lanes(&made)[1] > 0) || made.missed().is_some(), "{:?}", made.verdict);
 }

@@ -709,3 +709,31 @@ fn who_is_parking_ahead_stands_half_out_of_the_lane() {
     let (lead, ego) = (track(&stands, "lead").states[0], stands.rollout.ego_track().states[before_contact(&stands)]);
     assert!((ego.y - lead.y).abs() < 0.5 && lead.heading.abs() < 0.1, "{lead:?}");
 }
+
+const ROUND_PARKED: &str = "The AV was traveling north on Elm Street and moved to the left to go around a van parked on the right, and was moving back to the right when a \
+                            sedan from behind made contact with the rear of the AV.";
+
+#[test]
+fn whom_the_ego_is_told_to_go_round_is_not_just_parked_beside_it() {
+    let made = recrash_reconstruct::reconstruct(&told(ROUND_PARKED)).expect("it can be staged");
+    let others = made.verdict.checks.iter().find(|check| check.kind == CheckKind::Others).expect("one is told");
+    assert!(others.expected.contains("goes round"), "{others:?}");
+}
+
+#[test]
+fn who_comes_towards_an_ego_before_that_goes_aside_is_not_made_room_for() {
+    let account = told(MAKES_WAY);
+    let mut early = made(&account).draft;
+    let oncoming = early.actors.iter_mut().find(|actor| actor.id == "oncoming").expect("it is there");
+    moved(&mut oncoming.plan, -25.0, 0.0);
+    assert_eq!(others(&early, &account), Some(CheckResult::CannotBeShown));
+}
+
+#[test]
+fn a_lane_change_that_is_executed_is_not_cut_in() {
+    let words = "a hatchback cut into the lane of the AV";
+    let executed = CUTS_IN.replace(words, "a hatchback executed a lane change");
+    assert!(executed != CUTS_IN);
+    let made = recrash_reconstruct::reconstruct(&told(&executed)).expect("it can be staged");
+    assert!(made.rollout.actors.iter().all(|track| track.id != "merger"), "{:?}", made.verdict);
+}

@@ -209,7 +209,7 @@ fn who_passes_an_ego_that_has_yet_to_turn_comes_by_beside_it() {
     let made = made(&account);
     assert!(made.missed().is_none(), "{:?}", made.missed());
     let movement = made.verdict.checks.iter().find(|check| check.kind == CheckKind::SvMovement);
-    assert_eq!(movement.map(|check| check.expected.as_str()), Some("right turn, yet to begin"));
+    assert_eq!(movement.map(|check| check.expected.as_str()), Some("right turn, or yet to begin"));
 }
 
 #[test]

@@ -97,11 +97,19 @@ const LEFT_KERB: &str = "The AV was pulling out of a parking spot on Elm Street 
                          parked ahead of the AV.";
 
 #[test]
-fn one_that_is_parked_against_the_egos_way_stands_at_the_left_kerb() {
-    let mut account = story(SCRAPED_OPPOSITE);
-    account.came_from =
-        Some(recrash_model::account::Fact::by_rule(recrash_model::account::Origin::Opposite, "made for this test"));
-    let shown = made(&account);
+fn one_that_is_parked_on_the_opposite_side_stands_at_the_left_kerb_unless_it_is_told_to_face_the_ego() {
+    let opposite = |text: &str| {
+        let mut account = story(text);
+        account.came_from =
+            Some(recrash_model::account::Fact::by_rule(recrash_model::account::Origin::Opposite, "made for this test"));
+        account
+    };
+    let facing = reconstruct(&opposite(SCRAPED_OPPOSITE));
+    let faces = |made: &Reconstruction| {
+        degrees_between(partner(made).0[0].heading, made.rollout.ego_track().states[0].heading) > 120.0
+    };
+    assert!(facing.is_ok_and(|made| made.missed().is_some() || faces(&made)));
+    let shown = made(&opposite(&SCRAPED_OPPOSITE.replace("facing south on", "on")));
     let (states, met) = partner(&shown);
     assert!(met.y > shown.rollout.ego_track().states[0].y + 2.0 && states[0].speed() == 0.0, "{met:?}");
 }

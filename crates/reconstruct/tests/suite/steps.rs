@@ -292,3 +292,27 @@ fn a_turn_that_only_a_column_tells_is_yet_to_come_where_one_is_hit_from_behind()
     let states = &shown.rollout.ego_track().states;
     assert!(degrees_between(states[before_contact(&shown)].heading, states[0].heading) > 10.0);
 }
+
+#[test]
+fn who_stopped_and_then_went_on_stood_before_it_did() {
+    let text = "The AV was traveling north on Elm Street. A sedan following the AV stopped behind the AV and then continued forward and struck the rear of \
+                the AV.";
+    let shown = recrash_reconstruct::reconstruct(&story(text)).expect("it can be staged");
+    let state = shown.verdict.checks.iter().find(|check| check.kind == CheckKind::CpState).expect("it is told");
+    assert_eq!(state.expected, "moving, had stood");
+    assert!(partner(&shown).0.iter().any(|state| state.speed() == 0.0), "it stands");
+}
+
+#[test]
+fn who_comes_out_of_a_side_street_into_traffic_bends_into_it() {
+    let mut account = story(
+        "The AV was traveling north on Elm Street when a sedan coming out of a side street on the left made contact with the left side of the AV.",
+    );
+    account.partner.as_mut().expect("told").movement =
+        Some(Fact::of_column(Movement::EnteringTraffic, "CP Pre-Crash Movement"));
+    let shown = recrash_reconstruct::reconstruct(&account).expect("it can be staged");
+    let (states, met) = partner(&shown);
+    let bends = degrees_between(states[0].heading, met.heading) > 9.0;
+    let movement = shown.verdict.checks.iter().find(|check| check.kind == CheckKind::CpMovement).expect("it is told");
+    assert!(bends || movement.result != recrash_model::metrics::CheckResult::Shown, "{movement:?}");
+}
