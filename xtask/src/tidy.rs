@@ -8,6 +8,9 @@ use std::path::{Path, PathBuf};
 
 /// Longest file of code, tests excepted. [lines]
 const MAX_LINES: usize = 800;
+/// Two screens of a terminal, on which ARCHITECTURE.md says the shape. [lines of 120 columns]
+const SHAPE_LINES: usize = 100;
+const SHAPE_COLUMNS: usize = 120;
 /// Folders that hold nothing of ours.
 const FOREIGN: [&str; 8] =
     ["target", ".git", ".venv", ".oracles", ".pytest_cache", ".mypy_cache", ".ruff_cache", "node_modules"];
@@ -20,6 +23,7 @@ pub fn run(_: &mut Tally) -> Result {
     let mut files = Vec::new();
     collect(&root, &mut files);
     let mut problems = map_problems(&root);
+    problems.extend(shape_problems(&fs::read_to_string(root.join("ARCHITECTURE.md")).unwrap_or_default()));
     problems.extend(crate::edges::problems(&root)?);
     let works = crate::pages::works(&fs::read_to_string(root.join("docs/references.bib")).unwrap_or_default());
     for file in &files {
@@ -69,6 +73,19 @@ fn map_problems(root: &Path) -> Vec<String> {
 fn mapped_folders(text: &str) -> BTreeSet<String> {
     let map = text.split("## Map").nth(1).and_then(|rest| rest.split("\n## ").next()).unwrap_or_default();
     map.lines().filter_map(|line| line.strip_prefix("| `")?.split('`').next().map(str::to_owned)).collect()
+}
+
+/// What a newcomer reads first stands before what is looked up, and on two screens.
+fn shape_problems(text: &str) -> Option<String> {
+    let Some((shape, _)) = text.split_once("\n# To look things up\n") else {
+        return Some("ARCHITECTURE.md: has no line `# To look things up`, which ends what is read first".into());
+    };
+    let lines: usize = shape.lines().map(|line| line.chars().count().div_ceil(SHAPE_COLUMNS).max(1)).sum();
+    (lines > SHAPE_LINES).then(|| {
+        format!(
+            "ARCHITECTURE.md: the shape takes {lines} lines; move what is looked up down, {SHAPE_LINES} are two screens"
+        )
+    })
 }
 
 fn folders(folder: &Path) -> BTreeSet<String> {
@@ -221,6 +238,18 @@ mod tests {
     fn rows_of_the_map_are_read() {
         let text = "# A\n## Map\n| folder | what |\n|---|---|\n| `crates/model` | nouns |\n| `docs` | pages |\n## More\n| `x` | |";
         assert_eq!(mapped_folders(text), BTreeSet::from(["crates/model".into(), "docs".into()]));
+    }
+
+    #[test]
+    fn the_shape_of_the_house_stands_on_two_screens() {
+        let told = |text: &str| shape_problems(text).unwrap_or_default();
+        assert_eq!(told(&fs::read_to_string(root().join("ARCHITECTURE.md")).unwrap()), "");
+        assert!(told("# A\n").contains("has no line"));
+        let screens = |lines: usize| format!("{}# To look things up\n", "flow\n".repeat(lines));
+        assert_eq!(told(&screens(SHAPE_LINES)), "");
+        assert!(told(&screens(SHAPE_LINES + 1)).contains("takes 101 lines"));
+        let long = format!("{}\n{}", "x".repeat(SHAPE_COLUMNS + 1), screens(SHAPE_LINES - 1));
+        assert!(told(&long).contains("takes 101 lines"));
     }
 
     #[test]
