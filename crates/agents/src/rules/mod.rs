@@ -1,4 +1,18 @@
-//! Paraphrase and design by rules: no model, no network, the same answer every time.
+//! Paraphrase and design by rules: no model, no network, the same answer every time. See `docs/models/rules.md`.
+//!
+//! From a record to a narrative:
+//! - `text`: the narrative as sentences; `pattern`: the regular expressions they are searched with;
+//! - `actors`: whom a sentence speaks of;
+//! - `reading`: what columns and sentences state, as facts; what an account states, in the same terms;
+//! - `paraphrase`: which crash is told, and the facts that nobody states; `writing`: its text, made from its facts;
+//! - `telling`: an account told, in a suite that goes by accounts.
+//!
+//! From a narrative to a scenario:
+//! - `staging`: which conflicts can be staged, and in which lanes;
+//! - `rehearsal`: where and how two meet who follow their lanes and do not react;
+//! - `timing`: the lanes and the start whose rehearsed meeting is most like the told one;
+//! - `retry`: what the next try aims at, by what was wrong with the earlier ones;
+//! - `limits`: greatest speeds; `design`: the scenario, from all of these.
 
 mod actors;
 mod design;
@@ -31,7 +45,7 @@ use recrash_model::record::CrashRecord;
 use recrash_model::scenario::ScenarioDraft;
 use recrash_model::template::Template;
 
-/// The built-in rules. See `docs/models/rules.md`.
+/// The built-in rules.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Rules;
 
