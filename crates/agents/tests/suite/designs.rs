@@ -7,10 +7,11 @@ use recrash_metrics::{faithfulness, measure};
 use recrash_model::Diagnostic;
 use recrash_model::kinds::PartnerKind;
 use recrash_model::metrics::Check;
-use recrash_model::narrative::Narrative;
+use recrash_model::narrative::{Narrative, Origin};
 use recrash_model::profile::SystemProfile;
-use recrash_model::record::{Coded, CrashRecord};
-use recrash_model::scenario::ScenarioDraft;
+use recrash_model::record::{Coded, CrashRecord, RecordRef};
+use recrash_model::scenario::{Environment, ScenarioDraft};
+use recrash_model::surroundings::{Lighting, Surface, Weather};
 use recrash_model::template::{Movement, RoadType, Template};
 use recrash_model::zones::ContactZone::{self, Front, FrontLeft, FrontRight, Left, Rear, Right};
 use recrash_sim::{Ego, simulate};
@@ -228,6 +229,39 @@ fn with(draft: &ScenarioDraft, pointer: &str, value: f64, integer: bool) -> Scen
     assert!(place.is_number(), "{pointer}");
     *place = if integer { serde_json::json!(value as u64) } else { serde_json::json!(value) };
     serde_json::from_value(json).unwrap_or_else(|e| panic!("{pointer} = {value}: {e}"))
+}
+
+#[test]
+fn an_alternative_is_designed_in_its_own_surroundings_and_no_cut_of_the_sources_loses_it() {
+    let profile = support::paper();
+    let template = support::template(RoadType::Intersection, Movement::Straight, Movement::Straight);
+    let mut records: Vec<CrashRecord> = (1..=6)
+        .map(|number| {
+            let mut record = support::record(template, "A car came from the left and hit the AV.");
+            record.id = RecordRef { report_id: format!("1-{number}"), version: 1 };
+            record
+        })
+        .collect();
+    let last = records.last_mut().expect("six");
+    (last.surface, last.lighting) = (Some(Surface::Wet), Some(Lighting::DarkLighted));
+    (last.weather, last.posted_speed_mps) = (vec![Weather::Rain], Some(6.0));
+    let told = last.id.clone();
+    let records: Vec<&CrashRecord> = records.iter().collect();
+    let brief = support::brief("01-test", &records, &profile, 7);
+    let own = Rules.paraphrase(&brief).expect("a narrative").value;
+    let design = |narrative: &Narrative| Rules.design(&brief, narrative, &[]).expect("a design");
+    let of_the_pick = design(&own);
+    let alternative = design(&Narrative {
+        origin: Origin::Other { record: told.clone(), reason: "it cannot be retold".into() },
+        ..own.clone()
+    });
+    assert_eq!(of_the_pick.source.records.first(), Some(&records[0].id));
+    assert_eq!(of_the_pick.environment, Environment::default());
+    assert_eq!(alternative.source.records.first(), Some(&told), "{:?}", alternative.source.records);
+    let environment = Environment { surface: Surface::Wet, lighting: Lighting::DarkLighted, weather: Weather::Rain };
+    assert_eq!(alternative.environment, environment);
+    let speeds = (alternative.ego.target_speed_mps, of_the_pick.ego.target_speed_mps);
+    assert!(speeds.0 <= 6.0 && speeds.1 > 6.0, "not the limit of the record that is told: {speeds:?}");
 }
 
 #[test]
