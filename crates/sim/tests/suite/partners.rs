@@ -202,18 +202,21 @@ fn every_kind_slows_for_a_turn_as_its_plan_says() {
 }
 
 #[test]
-fn a_partner_stops_before_a_barrier_on_its_line_and_passes_one_beside_it() {
-    let meets = |t_m: f64| {
-        let mut draft = alone(straight(3, 200.0), Turn::Straight, 1, 1.0, 1.0);
-        draft.partners.push(lead(20.0, 12.0));
-        draft.obstacles.push(Obstacle { kind: ObstacleKind::Barrier, s_m: 120.0, t_m });
-        simulate(&checked(draft), Ego::MetadriveIdm)
-    };
-    let stops = meets(0.5);
-    assert!(stops.events.is_empty(), "{:?}", stops.events);
-    let last = stops.actors[1].states[300];
-    // Its front is 0.5 m before the barrier's near side: 120 - 0.15 - 0.5 - 2.2575.
-    assert!((last.x - 117.1).abs() < 0.4 && last.speed() < 0.05, "{last:?}");
-    assert!(hardest(&stops) < 4.0, "{}", hardest(&stops));
-    assert!(meets(2.2).actors[1].states[150].x > 180.0);
+fn a_partner_stops_before_what_stands_on_its_line_and_passes_what_stands_beside_it() {
+    for kind in [ObstacleKind::Barrier, ObstacleKind::Cone] {
+        let meets = |t_m: f64| {
+            let mut draft = alone(straight(3, 200.0), Turn::Straight, 1, 1.0, 1.0);
+            draft.partners.push(lead(20.0, 12.0));
+            draft.obstacles.push(Obstacle { kind, s_m: 120.0, t_m });
+            simulate(&checked(draft), Ego::MetadriveIdm)
+        };
+        let stops = meets(0.5);
+        assert!(stops.events.is_empty(), "{kind:?}: {:?}", stops.events);
+        let last = stops.actors[1].states[300];
+        // Its front is 0.5 m before the obstacle's near side.
+        let place_m = 120.0 - 0.5 * kind.size_m().0 - 0.5 - 2.2575;
+        assert!((last.x - place_m).abs() < 0.4 && last.speed() < 0.05, "{kind:?}: {last:?}");
+        assert!(hardest(&stops) < 4.0, "{kind:?}: {}", hardest(&stops));
+        assert!(meets(2.2).actors[1].states[150].x > 180.0, "{kind:?}");
+    }
 }
