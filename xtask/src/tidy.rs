@@ -2,7 +2,7 @@
 
 use crate::steps::{Result, root};
 use crate::tally::Tally;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -23,11 +23,12 @@ pub fn run(_: &mut Tally) -> Result {
     let mut files = Vec::new();
     collect(&root, &mut files);
     let mut problems = map_problems(&root);
+    problems.extend(test_binary_problems(&files.iter().map(|file| below(&root, file)).collect::<Vec<_>>()));
     problems.extend(shape_problems(&fs::read_to_string(root.join("ARCHITECTURE.md")).unwrap_or_default()));
     problems.extend(crate::edges::problems(&root)?);
     let works = crate::pages::works(&fs::read_to_string(root.join("docs/references.bib")).unwrap_or_default());
     for file in &files {
-        let name = file.strip_prefix(&root).unwrap_or(file).to_string_lossy().replace('\\', "/");
+        let name = below(&root, file);
         if let Ok(text) = fs::read_to_string(file) {
             problems.extend(file_problems(&name, &text));
             problems.extend(crate::pages::problems(&root, &name, &text, &works));
@@ -40,6 +41,35 @@ pub fn run(_: &mut Tally) -> Result {
         0 => Ok(()),
         n => Err(format!("{n} problems")),
     }
+}
+
+/// A file's name from the root on.
+fn below(root: &Path, file: &Path) -> String {
+    file.strip_prefix(root).unwrap_or(file).to_string_lossy().replace('\\', "/")
+}
+
+/// Each file or folder of a crate's `tests` is a program of its own, which takes seconds to link.
+fn test_binary_problems(files: &[String]) -> Vec<String> {
+    let mut programs: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
+    for file in files {
+        let Some((folder, rest)) = file.strip_prefix("crates/").and_then(|path| path.split_once("/tests/")) else {
+            continue;
+        };
+        let of_its_own = !folder.contains('/')
+            && match rest.split_once('/') {
+                None => rest.ends_with(".rs"),
+                Some((_, inner)) => inner == "main.rs",
+            };
+        if of_its_own {
+            programs.entry(folder).or_default().push(rest);
+        }
+    }
+    let several = programs.into_iter().filter(|(_, found)| found.len() > 1);
+    several
+        .map(|(name, found)| {
+            format!("crates/{name}: has {} test programs ({}); make them modules of one", found.len(), found.join(", "))
+        })
+        .collect()
 }
 
 /// Every file below a folder, in order; those of others left out.
@@ -278,6 +308,19 @@ mod tests {
     fn a_crate_that_speaks_to_a_network_is_told() {
         assert_eq!(file_problems("crates/pipeline/src/a.rs", "use std::net::TcpStream;").len(), 1);
         assert_eq!(file_problems("crates/fetch/src/a.rs", "ureq::get(url)").len(), 0);
+    }
+
+    #[test]
+    fn a_crate_with_two_test_programs_is_told() {
+        let told =
+            |files: &[&str]| test_binary_problems(&files.iter().map(|file| (*file).to_owned()).collect::<Vec<_>>());
+        let one =
+            ["crates/sim/tests/suite/main.rs", "crates/sim/tests/suite/runs.rs", "crates/sim/tests/fixtures/a.txt"];
+        assert_eq!(told(&one), Vec::<String>::new());
+        assert_eq!(told(&[&one[..], &["crates/drivers/tests/published.rs", "tests/main.rs"]].concat()).len(), 0);
+        for second in ["crates/sim/tests/fast.rs", "crates/sim/tests/other/main.rs"] {
+            assert_eq!(told(&[&one[..], &[second]].concat()).len(), 1, "{second}");
+        }
     }
 
     #[test]

@@ -242,7 +242,9 @@ async function checkTable(page, stems) {
   const last = await first();
   await button.click();
   check(stems.length < 2 || (await first()) !== last, 'sorting does not change the order');
-  for (const key of await page.locator('#case-sort option').evaluateAll((options) => options.map((option) => option.value))) {
+  const keys = await page.locator('#case-sort option').evaluateAll((options) => options.map((option) => option.value));
+  for (const key of ['impact', 'harm']) check(keys.includes(key), `the table cannot be sorted by ${key}`);
+  for (const key of keys) {
     await page.locator('#case-sort').selectOption(key);
     check((await page.locator('#cases tbody tr').count()) > 0, `sorting by ${key} loses the rows`);
   }
@@ -257,8 +259,8 @@ async function checkTable(page, stems) {
   if (told < 0) return;
   // Every key of the scenario finds it, and nothing that lacks the key is listed.
   const word = rows.words[told].split(' ').pop();
-  const keys = ['operator', 'city', 'kind'].map((key) => rows[key][0][rows[key][1][told]]).concat(word ? [word] : []);
-  for (const key of keys) {
+  const words = ['operator', 'city', 'kind'].map((key) => rows[key][0][rows[key][1][told]]).concat(word ? [word] : []);
+  for (const key of words) {
     await page.locator('#case-search').fill(key);
     const listed = Number((await page.locator('#case-count').textContent()).split(' ')[0]);
     check(listed > 0, `the search for "${key}" finds nothing`);
@@ -267,7 +269,9 @@ async function checkTable(page, stems) {
   await page.locator('#case-search').fill('');
   for (const key of ['operator', 'city', 'kind', 'injury']) {
     const select = page.locator(`[data-only=${key}]`);
-    if (!(await select.isVisible())) continue;
+    const shown = await select.isVisible();
+    check(shown === rows[key][0].length > 1, `the filter by ${key} ${shown ? 'has nothing to choose from' : 'is not there'}`);
+    if (!shown) continue;
     const index = rows[key][1][told];
     await select.selectOption(String(index));
     const wanted = rows[key][1].filter((value) => value === index).length;
