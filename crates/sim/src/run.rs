@@ -459,8 +459,11 @@ mod tests {
     use super::*;
     use crate::ego::Ego;
     use crate::lanes::LaneIndex;
+    use crate::metadrive_idm::MetadriveIdm;
+    use recrash_model::scenario::{EgoSpec, MapSpec, RoundaboutMap, SCENARIO_FORMAT, ScenarioDraft, Traffic};
+    use recrash_plan::constants::EGO_OVERTAKE_TIMER_STEPS;
     use recrash_plan::metadrive::{NO_HANDOVER, Run as Told};
-    use recrash_roads::{LaneId, check, read_draft};
+    use recrash_roads::{LaneId, TRAFFIC_SPEED_MPS, background_traffic, check, read_draft};
     use std::path::{Path, PathBuf};
 
     /// All files below `cases/`.
@@ -511,5 +514,40 @@ mod tests {
             }
         }
         assert!(on_lanes > 1000 && beside > 100, "{on_lanes} {beside}");
+    }
+    /// Drawn for each of them, and of no use where a simulator takes one for all.
+    #[test]
+    fn who_drives_by_metadrive_s_policy_has_the_timer_of_its_placement_in_both_simulators() {
+        let draft = ScenarioDraft {
+            format: SCENARIO_FORMAT.into(),
+            id: "test".into(),
+            map: MapSpec::O(RoundaboutMap {
+                lanes: 2,
+                lane_width_m: 3.5,
+                approach_m: 60.0,
+                arm_m: 60.0,
+                exit_radius_m: 10.0,
+                inner_radius_m: 30.0,
+            }),
+            ego: EgoSpec { s_m: 5.0, speed_mps: 7.0, target_speed_mps: 7.0, ..EgoSpec::default() },
+            traffic: Traffic { density: 0.3, seed: 3 },
+            duration_s: 40.0,
+            ..ScenarioDraft::default()
+        };
+        let scenario = check(draft).unwrap().value;
+        let placed: Vec<u32> = background_traffic(&scenario).iter().map(|spawn| spawn.overtake_timer_steps).collect();
+        assert!(placed.len() >= 4 && placed.iter().any(|steps| *steps != placed[0]), "{placed:?}");
+        let told = Told::new(&scenario, NO_HANDOVER).unwrap();
+        let timers: Vec<u32> = told.traffic.iter().map(|actor| actor.overtake_timer_steps).collect();
+        assert_eq!((told.ego.overtake_timer_steps, timers), (EGO_OVERTAKE_TIMER_STEPS, placed.clone()));
+        let run = Run::new(&scenario, Seat::BuiltIn(Ego::MetadriveIdm));
+        let ego = MetadriveIdm::new(scenario.draft().ego.target_speed_mps, EGO_OVERTAKE_TIMER_STEPS);
+        let traffic = placed.iter().map(|steps| MetadriveIdm::new(TRAFFIC_SPEED_MPS, *steps));
+        let wanted: Vec<String> = std::iter::once(ego).chain(traffic).map(|driver| format!("{driver:?}")).collect();
+        let policies = run.state.drivers.iter().filter_map(|driver| match driver {
+            Driver::MetadriveIdm(policy) => Some(format!("{policy:?}")),
+            _ => None,
+        });
+        assert_eq!(policies.collect::<Vec<_>>(), wanted);
     }
 }
