@@ -93,6 +93,42 @@ fn an_edited_account_is_kept_and_what_no_scene_shows_is_told() {
 }
 
 #[test]
+fn an_edited_scenario_and_tuned_file_survive_a_run_which_goes_on_from_them() {
+    let place = Place::made(&TOLD);
+    let tested: Vec<String> = cases(&place)
+        .into_iter()
+        .filter(|case| !case["tuned"].is_null())
+        .filter_map(|case| case["id"].as_str().map(str::to_owned))
+        .collect();
+    let [of_scenario, of_tuned] = [&tested[0], &tested[1]];
+    let files = [format!("suite/4-scenarios/{of_scenario}.json"), format!("suite/6-tuned/{of_tuned}.json")];
+    let runs = [format!("suite/5-runs/{of_scenario}.json"), format!("suite/7-tuned-runs/{of_tuned}.json")];
+    let hashes = || runs.each_ref().map(|run| json(&place, run)["rollout"]["state_hash"].clone());
+    let before = hashes();
+    let edited = files.each_ref().map(|file| {
+        let mut scenario = json(&place, file);
+        // What the system under test wants, from the handover on.
+        let target_mps = scenario["ego"]["target_speed_mps"].as_f64().unwrap();
+        scenario["ego"]["target_speed_mps"] = (target_mps - 0.125).into();
+        let bytes = serde_json::to_vec_pretty(&scenario).unwrap();
+        std::fs::write(place.path(file), &bytes).unwrap();
+        bytes
+    });
+    for _ in 0..2 {
+        let (code, _, remarks) = place.run(&TOLD);
+        assert_eq!(code, 0, "{remarks}");
+        for (file, bytes) in files.iter().zip(&edited) {
+            assert_eq!(&std::fs::read(place.path(file)).unwrap(), bytes, "{file}");
+        }
+        let now = hashes();
+        assert!(now[0] != before[0] && now[1] != before[1], "{now:?}");
+        let marked = cases(&place).into_iter().filter(|case| !case["edited"].as_array().unwrap().is_empty());
+        let marked: Vec<String> = marked.map(|case| case["id"].as_str().unwrap().to_owned()).collect();
+        assert_eq!(marked, [of_scenario.clone(), of_tuned.clone()]);
+    }
+}
+
+#[test]
 fn an_edited_scenario_that_is_not_as_told_ends_with_exit_code_5() {
     let place = Place::made(&TOLD);
     let id = cases(&place)
