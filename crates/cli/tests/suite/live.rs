@@ -5,8 +5,9 @@ use crate::common::scripted::ScriptedModel;
 use crate::common::server::{Reply, Request, Server, completion};
 use crate::common::{FEW, few, recrash};
 use serde_json::{Value, json};
+use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
-use std::process::Output;
+use std::process::{Output, Stdio};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, OnceLock};
 use std::time::{Duration, Instant};
@@ -604,6 +605,43 @@ fn nobody_at_the_address_is_told_within_seconds() {
     let output = recrash(&arguments).arg(folder.suite()).output().unwrap();
     assert_eq!(output.status.code(), Some(3), "{}", shown(&output));
     assert!(begun.elapsed() < Duration::from_secs(6), "{:?}", begun.elapsed());
+}
+
+/// A server that answers nobody: whoever comes behind the few it keeps waiting is not even refused.
+const SILENT: &str = r#"
+import socket, sys
+server = socket.socket()
+server.bind(("127.0.0.1", 0))
+server.listen(0)
+held = []
+try:
+    while len(held) < 64:
+        held.append(socket.create_connection(server.getsockname(), timeout=0.5))
+except TimeoutError:
+    print(server.getsockname()[1], flush=True)
+sys.stdin.read()
+"#;
+
+#[test]
+fn an_address_that_answers_nothing_is_told_within_seconds() {
+    let folder = Folder::new();
+    let mut silent = std::process::Command::new("python3");
+    silent.args(["-c", SILENT]).stdin(Stdio::piped()).stdout(Stdio::piped());
+    let mut silent = silent.spawn().unwrap();
+    let mut port = String::new();
+    BufReader::new(silent.stdout.as_mut().unwrap()).read_line(&mut port).unwrap();
+    let base_url = format!("http://127.0.0.1:{}/v1", port.trim());
+    recrash(&["records", "--quiet", "--records", FEW, "--out"]).arg(folder.suite()).assert().success();
+    let begun = Instant::now();
+    let arguments =
+        ["run", "--quiet", "--agent", "m", "--base-url", &base_url, "--records", FEW, "--budget", "3", "--out"];
+    let output = recrash(&arguments).arg(folder.suite()).output().unwrap();
+    assert_eq!(output.status.code(), Some(3), "{}", shown(&output));
+    assert!(shown(&output).contains("no connection within 4 s"), "{}", shown(&output));
+    assert!(begun.elapsed() < Duration::from_secs(9), "{:?}", begun.elapsed());
+    // Its input ends, and so does it.
+    drop(silent.stdin.take());
+    silent.wait().unwrap();
 }
 
 #[test]
