@@ -1,7 +1,7 @@
 //! A suite from a stranger is data: whatever is in it, nothing outside it changes and no program starts.
 #![cfg(unix)]
 
-use crate::common::{Place, SMALL, copy};
+use crate::common::{Place, SMALL, TOLD, copy};
 use serde_json::Value;
 use std::fs;
 use std::os::unix::fs::symlink;
@@ -19,6 +19,9 @@ const COMMANDS: [&[&str]; 9] = [
     &["export", "suite", "--to", "openscenario"],
     &["sweep", "suite", "-n", "2", "--out", "out.parquet"],
 ];
+
+/// The same, where a suite goes by accounts.
+const TOLD_COMMANDS: [&[&str]; 3] = [&TOLD, &["simulate"], &["report"]];
 
 /// What a stranger does to a suite in a folder, with a folder beside it that holds somebody's files.
 type Form = (&'static str, fn(&Path, &Path));
@@ -101,6 +104,23 @@ const FORMS: [Form; 22] = [
     }),
 ];
 
+const TOLD_FORMS: [Form; 5] = [
+    ("accounts that are a FIFO", |suite, _| fifo(&suite.join("1-accounts.json"))),
+    ("an account that is a link", |suite, beside| {
+        let file = first(suite, "3-narratives");
+        assert!(file.to_string_lossy().ends_with(".account.json"), "{file:?}");
+        fs::remove_file(&file).unwrap();
+        symlink(beside.join("precious"), file).unwrap();
+    }),
+    ("a tuned scenario that is a link", |suite, beside| {
+        let file = first(suite, "6-tuned");
+        fs::remove_file(&file).unwrap();
+        symlink(beside.join("precious"), file).unwrap();
+    }),
+    ("outputs with ../", |suite, _| claim(suite, "../beside/precious")),
+    ("an ego that is a program", |suite, beside| ego(suite, &format!("cmd:touch {}", beside.join("ran").display()))),
+];
+
 /// Names and contents of everything in a folder.
 fn state(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
     let mut all: Vec<_> = fs::read_dir(folder)
@@ -112,11 +132,10 @@ fn state(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
     all
 }
 
-#[test]
-fn a_hostile_suite_changes_nothing_outside_itself_and_runs_nothing() {
-    let made = Place::made(&SMALL);
-    for (form, spoil) in FORMS {
-        for command in COMMANDS {
+/// Spoils a suite in each form and works on it with each command.
+fn keeps_to_itself(made: &Place, forms: &[Form], commands: &[&[&str]]) {
+    for (form, spoil) in forms {
+        for command in commands {
             let place = Place::new();
             copy(&made.path("suite"), &place.path("suite"));
             let beside = place.path("beside");
@@ -130,6 +149,16 @@ fn a_hostile_suite_changes_nothing_outside_itself_and_runs_nothing() {
             assert_eq!(state(&beside), before, "{form}, {command:?}: {error}");
         }
     }
+}
+
+#[test]
+fn a_hostile_suite_changes_nothing_outside_itself_and_runs_nothing() {
+    keeps_to_itself(&Place::made(&SMALL), &FORMS, &COMMANDS);
+}
+
+#[test]
+fn nor_does_one_that_goes_by_accounts() {
+    keeps_to_itself(&Place::made(&TOLD), &TOLD_FORMS, &TOLD_COMMANDS);
 }
 
 #[test]
