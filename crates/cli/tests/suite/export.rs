@@ -95,6 +95,33 @@ fn every_scenario_of_a_suite_comes_back_with_the_state_hash_it_had() {
 }
 
 #[test]
+fn a_close_call_is_what_the_suite_s_profile_calls_one() {
+    let case = Case { place: Place::new() };
+    let profile = include_str!("../../../../profiles/paper.toml").replace("min_gap_m = 2.0", "min_gap_m = 0.625");
+    std::fs::write(case.path("mine.toml"), profile).unwrap();
+    let run = ["run", "--quiet", "--profile", "mine.toml", "--records", FEW, "--budget", "1", "--tune-budget", "1"];
+    let (code, shown) = case.run(&run);
+    assert_eq!(code, 0, "{shown}");
+    std::fs::write(case.path("dialect.json"), DIALECT).unwrap();
+    for (source, wanted) in [("suite", "value=\"0.625\""), ("dialect.json", "value=\"0.3\"")] {
+        let (code, shown) = case.run(&["export", source, "--to", "openscenario", "--to-dir", "out", "--force"]);
+        assert_eq!(code, 0, "{shown}");
+        let names = names_in(&case.path("out/openscenario"));
+        let scenario = |name: &String| name.strip_suffix(".xosc").is_some_and(|stem| !stem.contains('.'));
+        let file = names.into_iter().find(scenario).unwrap();
+        let text = std::fs::read_to_string(case.path("out/openscenario").join(&file)).unwrap();
+        let conditions = text.split("<RelativeDistanceCondition").skip(1);
+        let gaps: Vec<&str> = conditions.filter_map(|rest| rest.split('>').next()).collect();
+        assert!(!gaps.is_empty() && gaps.iter().all(|gap| gap.contains(wanted)), "{source}: {gaps:?}");
+        // Another profile's gap is no edit of the file.
+        let imported = case.json(&["import", &format!("out/openscenario/{file}"), "--out", "copy.json", "--force"]);
+        let remarks = imported["imported"]["diagnostics"].as_array().unwrap();
+        assert!(remarks.iter().all(|remark| remark["code"] != "openscenario.edited"), "{source}: {remarks:?}");
+        std::fs::remove_dir_all(case.path("out")).unwrap();
+    }
+}
+
+#[test]
 fn a_damaged_scenario_is_named_and_the_rest_is_exported() {
     let case = Case::with_suite();
     let scenarios = case.scenarios();

@@ -2,7 +2,7 @@
 
 use crate::openscenario::names::Declaration;
 use crate::openscenario::scene::whole;
-use crate::openscenario::{ENTITIES, LANES, STORYBOARD};
+use crate::openscenario::{ENTITIES, LANES, STORYBOARD, WATCH};
 use crate::xml::Element;
 use crate::{ExportOptions, Format};
 use recrash_model::tuning::Parameter;
@@ -42,7 +42,9 @@ pub(super) fn differences(root: &Element, original: &Scenario, declared: &[Decla
     if holds_whole(root) {
         return changed(root);
     }
-    let options = ExportOptions::new(Format::OpenScenario);
+    let defaults = ExportOptions::new(Format::OpenScenario);
+    let min_gap_m = watched_gap_m(root).unwrap_or(defaults.min_gap_m);
+    let options = ExportOptions { min_gap_m, ..defaults };
     let expected = crate::openscenario::scenario_element(original, &parameters, &options);
     let mut list = Vec::new();
     for part in ["Entities", "Storyboard"] {
@@ -54,6 +56,13 @@ pub(super) fn differences(root: &Element, original: &Scenario, declared: &[Decla
         list = changed(root);
     }
     list
+}
+
+/// What the file calls too near, which is the profile's of whoever wrote it and no part of the scenario. [m]
+fn watched_gap_m(root: &Element) -> Option<f64> {
+    let watches = |story: &&Element| story.attribute("name").is_some_and(|name| name.starts_with(WATCH));
+    let watch = root.find("Storyboard")?.all("Story").find(watches)?;
+    watch.deep("RelativeDistanceCondition")?.attribute("value")?.parse().ok()
 }
 
 /// Whether the header holds the whole scenario: everybody follows what was recorded, and nothing can be compared with it.

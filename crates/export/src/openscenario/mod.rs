@@ -150,6 +150,9 @@ pub(crate) const ENTITIES: &str = "recrash.entities";
 /// How the maneuvers end that say where across its lane a partner is.
 pub(crate) const LANES: &str = ": lanes";
 
+/// How the name of the story begins that sets what a runner reads.
+pub(crate) const WATCH: &str = "watch";
+
 /// Whether an entity is an obstacle.
 pub(crate) fn is_obstacle_name(name: &str) -> bool {
     name.starts_with("obstacle.")

@@ -5,7 +5,7 @@ use super::storyboard::{
     at_time, controller_is, event, event_on, follow_trajectory, group, maneuver, private, reference_of, set_variable,
     story, teleport,
 };
-use super::{Context, ENTITIES, STORYBOARD, entities, header, storyboard};
+use super::{Context, ENTITIES, STORYBOARD, WATCH, entities, header, storyboard};
 use crate::openscenario::environment::environment_action;
 use crate::openscenario::names::Declarations;
 use crate::openscenario::places::world_position;
@@ -210,7 +210,7 @@ fn watch(rollout: &Rollout) -> Element {
     } else {
         vec![maneuver("watch: contacts", vec![event_on("watch: contact", "watch: set egoCollided", set, touched)])]
     };
-    story("watch", vec![group("watch", None, maneuvers)])
+    story(WATCH, vec![group(WATCH, None, maneuvers)])
 }
 
 /// The scenario in a header, where it stands there as a whole.

@@ -3,7 +3,7 @@
 use super::driven::Driven;
 use super::line::line;
 use super::speed::{Phase, brake, phases, speed_at_once};
-use super::{Context, LANES, obstacle_name};
+use super::{Context, LANES, WATCH, obstacle_name};
 use crate::openscenario::environment::environment_action;
 use crate::openscenario::places::{
     ego_start, fixed_place, partner_start, place_on, reference_point, route, world_position,
@@ -198,7 +198,7 @@ fn watch_story(context: &Context<'_>) -> Element {
     let contact = event_on("watch: contact", "watch: set egoCollided", set_variable("egoCollided"), collided.collect());
     let close = event_on("watch: gap", "watch: set closeCall", set_variable("closeCall"), near.collect());
     let maneuvers = vec![maneuver("watch: contacts", vec![contact]), maneuver("watch: gaps", vec![close])];
-    story("watch", vec![group("watch", None, maneuvers)])
+    story(WATCH, vec![group(WATCH, None, maneuvers)])
 }
 
 fn stop_trigger(context: &Context<'_>) -> Element {

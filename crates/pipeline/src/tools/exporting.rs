@@ -155,6 +155,8 @@ struct ScenarioSource {
     path: PathBuf,
     parameters: Vec<Parameter>,
     ego: String,
+    /// What the profile calls too near. [m]
+    min_gap_m: f64,
 }
 
 fn parent(file: &Path) -> PathBuf {
@@ -163,13 +165,15 @@ fn parent(file: &Path) -> PathBuf {
 
 fn sources(source: &Path, designed: bool, trust: bool) -> Result<Vec<ScenarioSource>, PipelineError> {
     let Some(options) = source.is_dir().then(|| Suite::saved_options(source)).transpose()? else {
-        let ego = load_profile(DEFAULT_PROFILE)?.ego;
-        return Ok(vec![ScenarioSource { path: source.to_owned(), parameters: Vec::new(), ego }]);
+        let profile = load_profile(DEFAULT_PROFILE)?;
+        let (ego, min_gap_m) = (profile.ego, profile.failure.min_gap_m);
+        return Ok(vec![ScenarioSource { path: source.to_owned(), parameters: Vec::new(), ego, min_gap_m }]);
     };
     let options = options.ok_or_else(|| {
         PipelineError::bad_input(format!("{} is not a suite: it holds no suite.json", source.display()))
     })?;
-    let ego = options.ego.clone().map_or_else(|| load_profile(&options.profile).map(|p| p.ego), Ok)?;
+    let profile = options.system_profile()?;
+    let ego = options.ego.unwrap_or(profile.ego);
     refuse_untrusted(&ego, trust)?;
     let store = Store::at(source);
     let selection: Selection = store.read_json(names::SELECTION)?;
@@ -178,7 +182,7 @@ fn sources(source: &Path, designed: bool, trust: bool) -> Result<Vec<ScenarioSou
         let log: Option<TuneLog> = store.read_json(&names::tune_log(id)).ok();
         let parameters = log.map_or_else(Vec::new, |log| log.parameters);
         let name = if designed { names::scenario(id) } else { names::tuned(id) };
-        ScenarioSource { path: store.path(&name), parameters, ego: ego.clone() }
+        ScenarioSource { path: store.path(&name), parameters, ego: ego.clone(), min_gap_m: profile.failure.min_gap_m }
     };
     Ok(selection.clusters.iter().map(|cluster| of(&cluster.scenario_id)).collect())
 }
@@ -201,7 +205,7 @@ fn files_of(
     let native = start_simulator(SimulatorKind::Native, ego, Path::new(""), 1, Patience::default()).map_err(told)?;
     let rollout = native.run(&scenario).map_err(|error| told(error.into()))?;
     let files = formats.iter().map(|&format| {
-        let options = ExportOptions { partners_as, ..ExportOptions::new(format) };
+        let options = ExportOptions { partners_as, min_gap_m: source.min_gap_m, ..ExportOptions::new(format) };
         recrash_export::export(&scenario, Some(&rollout), &source.parameters, &options).map_err(|e| e.to_string())
     });
     files.collect()
