@@ -245,21 +245,40 @@ fn every_kind_of_road_user_drives_walks_or_stands() {
     }
 }
 
+/// As `crates/sim/tests/suite/behaviour.rs` says of ours: until the kick at the next road, or until rounding alone ends it.
+#[test]
+fn at_exactly_the_speed_it_wants_the_ego_rolls_on_as_ours_does() {
+    let Some(metadrive) = start() else { return };
+    for speed in [1.0, 2.0, 8.0] {
+        let mut draft = crossing();
+        draft["partners"] = json!([]);
+        draft["duration_s"] = json!(6.0);
+        (draft["ego"]["speed_mps"], draft["ego"]["target_speed_mps"]) = (json!(speed), json!(speed));
+        let rollout = metadrive.simulate(&checked(&draft), &Drive::MetadriveIdm).unwrap();
+        let before_the_kick = ((4.0 / speed / 0.1) as usize).min(13);
+        let speeds: Vec<f64> = rollout.ego_track().states.iter().map(|state| state.speed()).collect();
+        assert!(speeds[..before_the_kick].iter().all(|now| (now - speed).abs() < 1e-4), "{speed}: {speeds:?}");
+    }
+}
+
 #[test]
 fn every_kind_holds_its_line_after_a_sideways_move_and_brakes_no_harder_than_planned() {
     let Some(metadrive) = start() else { return };
     let moving = PartnerKind::ALL.into_iter().filter(|kind| *kind != PartnerKind::FixedObject);
     let cases: Vec<(PartnerKind, f64)> = moving
         .flat_map(|kind| {
-            let fastest = VehicleSpec::of(kind).max_speed_mps.min(20.0);
+            let fastest = VehicleSpec::of(kind).max_speed_mps.min(22.2);
             [0.3, 0.65, 1.0].map(|share| (kind, (share * fastest * 100.0).floor() / 100.0))
         })
         .collect();
+    // To the right and to the left by turns, so that every kind goes both ways.
+    let to_t_m = |number: usize| if number.is_multiple_of(2) { 1.0 } else { -1.0 };
     let scenarios: Vec<Scenario> = cases
         .iter()
-        .map(|(kind, speed)| {
+        .enumerate()
+        .map(|(number, (kind, speed))| {
             let mut draft = crossing();
-            draft["map"] = json!({"type": "S", "lanes": 3, "lane_width_m": 3.5, "approach_m": 60.0, "length_m": 300.0});
+            draft["map"] = json!({"type": "S", "lanes": 3, "lane_width_m": 3.5, "approach_m": 60.0, "length_m": 400.0});
             draft["duration_s"] = json!(15.5);
             draft["ego"] =
                 json!({"turn": "straight", "lane": 1, "s_m": 5.0, "speed_mps": 1.0, "target_speed_mps": 1.0});
@@ -270,17 +289,18 @@ fn every_kind_holds_its_line_after_a_sideways_move_and_brakes_no_harder_than_pla
             partner["speed_mps"] = json!(speed);
             partner["policy"] =
                 json!({"type": "sudden_brake", "target_speed": speed, "brake_step": 0, "brake_steps": 0});
-            partner["lateral"] = json!([{"start_s": 1.0, "duration_s": 1.5, "to_t_m": 1.0}]);
+            partner["lateral"] = json!([{"start_s": 1.0, "duration_s": 1.5, "to_t_m": to_t_m(number)}]);
             checked(&draft)
         })
         .collect();
     let mut bad = Vec::new();
     let rollouts = metadrive.simulate_all(&scenarios, &Drive::MetadriveIdm, &|_| {});
-    for ((kind, speed), rollout) in cases.iter().zip(rollouts) {
+    for (number, ((kind, speed), rollout)) in cases.iter().zip(rollouts).enumerate() {
         let rollout = rollout.unwrap_or_else(|error| panic!("{kind:?}: {error}"));
         let states = &rollout.actors[1].states;
         let late = states.iter().skip(145);
-        let off_m = late.clone().map(|state| (state.y - (states[0].y - 1.0)).abs()).fold(0.0, f64::max);
+        let wanted_y = states[0].y - to_t_m(number);
+        let off_m = late.clone().map(|state| (state.y - wanted_y).abs()).fold(0.0, f64::max);
         let off_deg = late.map(|state| state.heading.to_degrees().abs()).fold(0.0, f64::max);
         let hardest = states.windows(2).map(|pair| (pair[0].speed() - pair[1].speed()) / 0.1).fold(0.0, f64::max);
         if states.len() < 150 || off_m > 0.05 || off_deg > 0.3 || hardest > 2.5 {
