@@ -13,6 +13,7 @@ pub mod comparison;
 mod conflict;
 pub mod coverage;
 pub mod diagnostic;
+mod formats;
 pub mod frozen;
 pub mod geometry;
 pub mod hash;

@@ -10,7 +10,7 @@ use crate::scenario::{Approach, Author, MissingArm, ObstacleKind};
 use crate::template::{Movement, Template};
 use crate::zones::ContactZone;
 use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize};
 
 /// The narratives' format tag.
 pub const NARRATIVE_FORMAT: &str = "recrash.narrative/2";
@@ -20,6 +20,7 @@ pub const NARRATIVE_FORMAT: &str = "recrash.narrative/2";
 #[serde(deny_unknown_fields)]
 pub struct Narrative {
     /// Always [`NARRATIVE_FORMAT`].
+    #[serde(deserialize_with = "known_format")]
     pub format: String,
     /// The scenario it is for.
     pub scenario_id: String,
@@ -35,6 +36,10 @@ pub struct Narrative {
     pub origin: Origin,
     /// Who wrote it.
     pub author: Author,
+}
+
+fn known_format<'de, D: Deserializer<'de>>(deserializer: D) -> Result<String, D::Error> {
+    crate::formats::known(deserializer, NARRATIVE_FORMAT)
 }
 
 impl Narrative {

@@ -7,7 +7,7 @@ use crate::metrics::{Answer, CheckKind, CheckResult, Finding, FindingKind, Metri
 use crate::preventability::Preventability;
 use crate::rollout::{EventKind, Rollout};
 use crate::severity::Severity;
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize};
 
 /// The judged runs' format tag.
 pub const RUN_FORMAT: &str = "recrash.run/2";
@@ -25,6 +25,7 @@ pub struct JudgedRun {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Judgement {
     /// Always [`RUN_FORMAT`].
+    #[serde(deserialize_with = "known_format")]
     pub format: String,
     /// Name of the run by its content: scenario, ego, simulator and every state. Two runs of one id are the same run.
     pub id: String,
@@ -51,6 +52,10 @@ pub struct Judgement {
     /// What reference drivers make of the ego's contact, where they were asked.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub preventability: Option<Preventability>,
+}
+
+fn known_format<'de, D: Deserializer<'de>>(deserializer: D) -> Result<String, D::Error> {
+    crate::formats::known(deserializer, RUN_FORMAT)
 }
 
 impl JudgedRun {

@@ -4,7 +4,7 @@ use crate::metrics::{FindingKind, Timed};
 use crate::rollout::TerminationKind;
 use crate::run::{Crash, JudgedRun};
 use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize};
 
 /// The triages' format tag.
 pub const TRIAGE_FORMAT: &str = "recrash.triage/3";
@@ -132,11 +132,16 @@ pub struct EgoOutcome {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Triage {
     /// Always [`TRIAGE_FORMAT`].
+    #[serde(deserialize_with = "known_format")]
     pub format: String,
     /// What the failure is worth.
     pub class: FailureClass,
     /// How the other egos fared, in the simulator's order.
     pub others: Vec<EgoOutcome>,
+}
+
+fn known_format<'de, D: Deserializer<'de>>(deserializer: D) -> Result<String, D::Error> {
+    crate::formats::known(deserializer, TRIAGE_FORMAT)
 }
 
 impl Triage {

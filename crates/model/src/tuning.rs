@@ -3,7 +3,7 @@
 use crate::metrics::{FindingKind, Timed};
 use crate::scenario::{Policy, ScenarioDraft};
 use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize};
 
 /// The tune logs' format tag.
 pub const TUNE_FORMAT: &str = "recrash.tune/1";
@@ -92,6 +92,7 @@ pub struct TunePoint {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TuneLog {
     /// Always [`TUNE_FORMAT`].
+    #[serde(deserialize_with = "known_format")]
     pub format: String,
     /// Scenario.
     pub scenario_id: String,
@@ -105,6 +106,10 @@ pub struct TuneLog {
     pub points: Vec<TunePoint>,
     /// Number of the point that was kept.
     pub best: usize,
+}
+
+fn known_format<'de, D: Deserializer<'de>>(deserializer: D) -> Result<String, D::Error> {
+    crate::formats::known(deserializer, TUNE_FORMAT)
 }
 
 /// Sets the parameters of a scenario. Whole-number parameters are rounded. Who starts at its target speed in the draft

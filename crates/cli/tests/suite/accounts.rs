@@ -182,6 +182,24 @@ fn a_model_reads_there_and_does_nothing_else() {
 }
 
 #[test]
+fn an_account_of_a_format_that_nobody_knows_is_told_with_both_formats() {
+    let place = Place::made(&TOLD);
+    let id = cases(&place)[0]["id"].as_str().unwrap().to_owned();
+    let file = format!("suite/3-narratives/{id}.account.json");
+    let mut account = json(&place, &file);
+    account["format"] = "recrash.account/9".into();
+    std::fs::write(place.path(&file), account.to_string()).unwrap();
+    let (code, _, remarks) = place.run(&TOLD);
+    assert_eq!(code, 0, "the others go on: {remarks}");
+    let failures: Vec<String> =
+        cases(&place).iter().filter(|case| case["failure"].is_object()).map(|c| c["failure"].to_string()).collect();
+    assert_eq!(failures.len(), 1, "{remarks}");
+    for words in [&*format!("{id}.account.json"), "format: ", "recrash.account/9", "recrash.account/1"] {
+        assert!(failures[0].contains(words), "{words}: {}", failures[0]);
+    }
+}
+
+#[test]
 fn an_account_that_somebody_spoiled_stops_its_case_alone_until_it_is_mended() {
     let place = Place::made(&TOLD);
     let id = cases(&place)[0]["id"].as_str().unwrap().to_owned();

@@ -94,6 +94,23 @@ fn an_edit_that_is_no_scenario_stops_its_case_alone_and_is_kept() {
 }
 
 #[test]
+fn a_narrative_of_a_format_that_nobody_knows_is_told_with_both_formats() {
+    let place = Place::made(&THREE);
+    let narrative = files(&place, "3-narratives")[0].clone();
+    edit(&narrative, "/format", "recrash.narrative/9".into());
+    run(&place, &THREE);
+    let summary = read(&place.path("suite/summary.json"));
+    let cases = summary["cases"].as_array().unwrap();
+    let failures: Vec<String> =
+        cases.iter().filter(|case| !case["failure"].is_null()).map(|case| case["failure"].to_string()).collect();
+    assert_eq!(failures.len(), 1, "the others go on: {failures:?}");
+    let name = narrative.file_name().unwrap().to_string_lossy();
+    for words in [&name, "format: ", "recrash.narrative/9", "recrash.narrative/2"] {
+        assert!(failures[0].contains(words), "{words}: {}", failures[0]);
+    }
+}
+
+#[test]
 fn an_edited_case_that_leaves_the_suite_leaves_its_edit_there() {
     let place = Place::made(&THREE);
     let all = files(&place, "4-scenarios");

@@ -26,7 +26,7 @@ use crate::scenario::Author;
 use crate::template::{Movement, RoadType, Template};
 use crate::zones::ContactZone;
 use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize};
 
 /// Format tag of accounts.
 pub const ACCOUNT_FORMAT: &str = "recrash.account/1";
@@ -93,6 +93,7 @@ pub fn told<T: Copy>(fact: &Option<Fact<T>>) -> Option<T> {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Account {
     /// [`ACCOUNT_FORMAT`].
+    #[serde(deserialize_with = "known_format")]
     pub format: String,
     /// The incident.
     pub incident: String,
@@ -146,6 +147,10 @@ pub struct Account {
     /// Who read it: the built-in reader, or a language model whose facts are laid over the reader's.
     #[serde(default, skip_serializing_if = "Author::is_rules")]
     pub author: Author,
+}
+
+fn known_format<'de, D: Deserializer<'de>>(deserializer: D) -> Result<String, D::Error> {
+    crate::formats::known(deserializer, ACCOUNT_FORMAT)
 }
 
 impl Account {

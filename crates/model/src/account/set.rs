@@ -3,7 +3,7 @@
 use super::{Account, CrashType, Untold};
 use crate::metrics::CheckKind;
 use crate::origin::RecordRef;
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize};
 
 /// Format tag of [`AccountSet`].
 pub const ACCOUNTS_FORMAT: &str = "recrash.accounts/2";
@@ -41,6 +41,7 @@ pub struct TypeShare {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct AccountSet {
     /// Always [`ACCOUNTS_FORMAT`].
+    #[serde(deserialize_with = "known_format")]
     pub format: String,
     /// Incidents of the files.
     pub incidents: usize,
@@ -54,6 +55,10 @@ pub struct AccountSet {
     pub told: Vec<Account>,
     /// What became of the other readable incidents.
     pub untold: Vec<UntoldIncident>,
+}
+
+fn known_format<'de, D: Deserializer<'de>>(deserializer: D) -> Result<String, D::Error> {
+    crate::formats::known(deserializer, ACCOUNTS_FORMAT)
 }
 
 /// An incident whose crash is not told.
