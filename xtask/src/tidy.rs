@@ -160,6 +160,15 @@ fn file_problems(name: &str, text: &str) -> Vec<String> {
                 }
             }
         }
+        let library = name.starts_with("crates/") && name.contains("/src/") && !test;
+        if library && !KNOW_OPTIONS.iter().any(|folder| name.starts_with(folder)) {
+            for (line, option) in options_named(text) {
+                problems.push(format!(
+                    "{name}:{line}: names the option {option}; a library does not know how it is called, so say it in plain \
+                     words and let the command name the option"
+                ));
+            }
+        }
         if let Some(stage) = stage_crate(name) {
             let code = text.split("#[cfg(test)]").next().unwrap_or_default();
             let test = test || name.contains("/examples/") || name.contains("/benches/");
@@ -171,6 +180,38 @@ fn file_problems(name: &str, text: &str) -> Vec<String> {
         }
     }
     problems
+}
+
+/// Commands of other programs, whose options are theirs.
+const OTHER_PROGRAMS: [&str; 3] = ["netconvert ", "pip download ", "scenic {"];
+
+/// Where options are named: the command, and files and pages that tell the command which makes them again.
+const KNOW_OPTIONS: [&str; 8] = [
+    "crates/cli/",
+    "crates/pipeline/src/embedding/weights.rs",
+    "crates/pipeline/src/options.rs",
+    "crates/pipeline/src/stages/view.rs",
+    "crates/pipeline/src/tools/comparing/page.rs",
+    "crates/pipeline/src/tools/evidence/claims.rs",
+    "crates/pipeline/src/tools/parity/tables.rs",
+    "crates/report/src/page/overview.rs",
+];
+
+/// Lines whose texts name an option of a command line. A text that is nothing but an option is an argument of a program.
+fn options_named(text: &str) -> Vec<(usize, String)> {
+    let code = text.split("#[cfg(test)]").next().unwrap_or_default();
+    let named = |line: &str| {
+        line.match_indices("--").find_map(|(at, _)| {
+            let word: String = line[at + 2..].chars().take_while(|c| c.is_ascii_lowercase() || *c == '-').collect();
+            let (before, behind) = (line[..at].chars().last()?, line[at + 2 + word.len()..].chars().next());
+            let told = matches!(before, ' ' | '`') || (before == '"' && behind != Some('"'));
+            let ours = !OTHER_PROGRAMS.iter().any(|program| line[..at].contains(program));
+            (told && ours && word.starts_with(|c: char| c.is_ascii_lowercase())).then(|| format!("--{word}"))
+        })
+    };
+    let lines =
+        code.lines().enumerate().filter(|(_, line)| line.contains("--") && !line.trim_start().starts_with("//"));
+    lines.filter_map(|(number, line)| Some((number + 1, named(line)?))).collect()
 }
 
 /// What a crate that only turns values into values has no use for.
@@ -308,6 +349,30 @@ mod tests {
     fn a_crate_that_speaks_to_a_network_is_told() {
         assert_eq!(file_problems("crates/pipeline/src/a.rs", "use std::net::TcpStream;").len(), 1);
         assert_eq!(file_problems("crates/fetch/src/a.rs", "ureq::get(url)").len(), 0);
+    }
+
+    #[test]
+    fn a_library_that_names_an_option_is_told() {
+        let told = |name: &str, line: &str| file_problems(name, line).len();
+        let error = r#"    bad("it is there already; add --force to overwrite it")"#;
+        for name in ["crates/sim/src/a.rs", "crates/fetch/src/a.rs", "crates/pipeline/src/tools/a.rs"] {
+            assert_eq!(told(name, error), 1, "{name}");
+        }
+        for name in ["crates/cli/src/a.rs", "crates/sim/tests/suite/a.rs", "xtask/src/a.rs"] {
+            assert_eq!(told(name, error), 0, "{name}");
+        }
+        for (line, expected) in [
+            (r#"format!("--vary {pointer}: there is no such number")"#, 1),
+            (r#"hint("run `recrash simulate --out suite`")"#, 1),
+            (r#".args(["-c", BOOT, "--worker"])"#, 0),
+            (r#"path stroke="var(--ego)" {}"#, 0),
+            (r#"hint("`pip download --no-deps {package}` gets it")"#, 0),
+            ("    /// As `--force` of the command does.", 0),
+            ("let x = a - -b; // -- a rule --", 0),
+            ("#[cfg(test)]\nmod tests { const WORDS: &str = \"run --quiet\"; }", 0),
+        ] {
+            assert_eq!(told("crates/sim/src/a.rs", line), expected, "{line}");
+        }
     }
 
     #[test]

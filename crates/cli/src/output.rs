@@ -3,8 +3,10 @@
 use crate::bars::Bars;
 use crate::screen::{self, bold, dim, eprintln, println, red, yellow};
 use recrash_model::diagnostic::{Diagnostic, Severity};
-use recrash_pipeline::{NoProgress, PipelineError, Progress, StageReport, Suite, quoted};
+use recrash_model::frozen::FROZEN_FILE;
+use recrash_pipeline::{Choice, NoProgress, PipelineError, Progress, StageReport, Suite, quoted};
 use serde::Serialize;
+use std::borrow::Cow;
 
 /// Remarks of one stage that are shown one by one.
 const REMARKS_SHOWN: usize = 8;
@@ -55,15 +57,36 @@ pub fn error(error: &PipelineError) {
 }
 
 /// The options that mend an error: the library knows none.
-fn options_for(error: &PipelineError) -> Option<&'static str> {
-    Some(match error {
+fn options_for(error: &PipelineError) -> Option<Cow<'static, str>> {
+    let options = match error {
+        PipelineError::MissingStage { dir, missing: stage } | PipelineError::StaleStage { dir, stage } => {
+            return Some(format!("recrash {stage} --out {} runs it", quoted(&dir.to_string_lossy())).into());
+        }
+        PipelineError::NoSuite { dir } if !dir.join(FROZEN_FILE).is_file() => {
+            return Some(format!("recrash run --out {} makes one there", quoted(&dir.to_string_lossy())).into());
+        }
+        PipelineError::Choose { choice, .. } => options_of(*choice),
         PipelineError::Busy { .. } | PipelineError::NotASuite { .. } => "--out names the folder",
         PipelineError::OtherSuite { .. } => "--out names the folder; --replace makes this suite in the other's place",
         PipelineError::Untrusted { .. } => "--ego names the program; --trust trusts the suite",
         PipelineError::BudgetSpent(_) => "--max-tokens and --max-cost are the caps",
         PipelineError::Threads(_) => "--threads 1 is the least",
         _ => return None,
-    })
+    };
+    Some(options.into())
+}
+
+/// The options by which something is chosen.
+fn options_of(choice: Choice) -> &'static str {
+    match choice {
+        Choice::ExportFolder => "--force overwrites them; --to-dir names another folder",
+        Choice::ImportFile => "--force overwrites it; --out names another file",
+        Choice::FrozenSuite => "--replace makes this one in its place",
+        Choice::Records => "--records names them; recrash fetch --edition archive and recrash fetch download NHTSA's",
+        Choice::Record => "recrash records --csv FILE lists them",
+        Choice::Filter => "recrash records --help lists the fields",
+        Choice::ModelFolder => "--model-dir names the folder",
+    }
 }
 
 /// Prints that the standard output cannot be written.
@@ -97,6 +120,9 @@ pub fn interrupted(goes_on: bool) {
 
 /// Prints one remark.
 pub fn remark(diagnostic: &Diagnostic) {
+    let edited = diagnostic.code == "suite.edited" && diagnostic.severity == Severity::Warning;
+    let with_option = edited.then(|| diagnostic.clone().with_hint("--discard-edits makes it anew"));
+    let diagnostic = with_option.as_ref().unwrap_or(diagnostic);
     match diagnostic.severity {
         Severity::Error => eprintln!("  {} {diagnostic}", red("error")),
         Severity::Warning => eprintln!("  {} {diagnostic}", yellow("warning")),

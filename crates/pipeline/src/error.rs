@@ -26,6 +26,14 @@ pub enum PipelineError {
         /// Every single problem.
         diagnostics: Vec<Diagnostic>,
     },
+    /// What the user gave cannot be used as it is, and a choice of the caller's mends it.
+    #[error("{what}")]
+    Choose {
+        /// What is wrong, in one sentence.
+        what: String,
+        /// What there is to choose.
+        choice: Choice,
+    },
     /// One scenario cannot be made or run; a stage keeps why, and goes on with the others.
     #[error("{id}: {why}")]
     Scenario {
@@ -41,7 +49,7 @@ pub enum PipelineError {
         dir: PathBuf,
     },
     /// A stage needs an earlier one.
-    #[error("{}: there is no finished stage \"{missing}\" in it; run `recrash {missing} --out {}` first", dir.display(), dir.display())]
+    #[error("{}: there is no finished stage \"{missing}\" in it, which has to be run first", dir.display())]
     MissingStage {
         /// The suite.
         dir: PathBuf,
@@ -49,7 +57,7 @@ pub enum PipelineError {
         missing: &'static str,
     },
     /// A stage was run with other options, or before something that it reads was changed.
-    #[error("{}: what stage \"{stage}\" made is not of the options and files as they are now; run `recrash {stage} --out {}` first", dir.display(), dir.display())]
+    #[error("{}: what stage \"{stage}\" made is not of the options and files as they are now; it has to be run again first", dir.display())]
     StaleStage {
         /// The suite.
         dir: PathBuf,
@@ -153,10 +161,34 @@ pub enum PipelineError {
     Threads(String),
 }
 
+/// What mends an error that the caller could have chosen otherwise. Who calls knows how it is chosen.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Choice {
+    /// Where exports go, and whether files that are there are overwritten.
+    ExportFolder,
+    /// Where an imported scenario goes, and whether the file that is there is overwritten.
+    ImportFile,
+    /// Whether a frozen suite is replaced.
+    FrozenSuite,
+    /// Which crash files are read.
+    Records,
+    /// Which record is meant.
+    Record,
+    /// Which records are taken.
+    Filter,
+    /// Where the files of an embedding model are.
+    ModelFolder,
+}
+
 impl PipelineError {
     /// Bad input with one sentence and nothing more.
     pub fn bad_input(what: impl Into<String>) -> Self {
         Self::BadInput { what: what.into(), diagnostics: Vec::new() }
+    }
+
+    /// What cannot be used as it is, and what there is to choose.
+    pub fn choose(what: impl Into<String>, choice: Choice) -> Self {
+        Self::Choose { what: what.into(), choice }
     }
 
     /// What one scenario failed of. It ends up in a file of the suite, and may be in a program's own words: keys are blacked
@@ -196,6 +228,7 @@ impl PipelineError {
             | Self::Usage(_) => 2,
             Self::NoSuite { .. }
             | Self::BadInput { .. }
+            | Self::Choose { .. }
             | Self::Scenario { .. }
             | Self::Damaged { .. }
             | Self::ModelRefused(_) => 3,
@@ -210,7 +243,7 @@ fn without_suite(dir: &Path) -> String {
     if dir.join(FROZEN_FILE).is_file() {
         return "it holds a frozen one, which `recrash test` runs; name the suite that it was made of".to_owned();
     }
-    format!("it holds no suite.json; check the folder, or make one there with `recrash run --out {}`", dir.display())
+    "it holds no suite.json; check the folder, or make one there".to_owned()
 }
 
 fn hint(source: &std::io::Error) -> &'static str {

@@ -24,7 +24,7 @@ pub use embedding::EmbeddingKind;
 pub use embedding::weights::{
     PullRequest, Pulled, Weights, WeightsSource, find_weights, is_published_model, pull_model,
 };
-pub use error::PipelineError;
+pub use error::{Choice, PipelineError};
 pub use files::output::{Begun, Output, Outputs};
 pub use files::paths::quoted;
 pub use files::store::{Store, WriteFile, remove_unfinished};

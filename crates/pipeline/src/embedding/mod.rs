@@ -3,7 +3,7 @@
 pub(crate) mod weights;
 
 use crate::embedding::weights::{find_weights, load};
-use crate::error::PipelineError;
+use crate::error::{Choice, PipelineError};
 use crate::files::json::to_compact_json;
 use crate::files::store::sha256;
 use rayon::prelude::*;
@@ -71,10 +71,13 @@ impl Embeds {
         }
         let Some(weights) = find_weights(python) else {
             return match kind {
-                EmbeddingKind::Minilm => Err(PipelineError::bad_input(format!(
-                    "the files of {MINILM_NAME} are not on this machine; `recrash model pull` gets them, or name their \
-                     folder with --model-dir"
-                ))),
+                EmbeddingKind::Minilm => Err(PipelineError::choose(
+                    format!(
+                        "the files of {MINILM_NAME} are not on this machine; `recrash model pull` gets them, or name \
+                         their folder"
+                    ),
+                    Choice::ModelFolder,
+                )),
                 _ => Ok((Self::Lexical, Vec::new())),
             };
         };
@@ -82,20 +85,21 @@ impl Embeds {
         match model {
             Ok(model) if model.is_pinned() => Ok((Self::Model(Box::new(model)), Vec::new())),
             Err(error) if kind == EmbeddingKind::Minilm => Err(error),
-            Ok(_) if kind == EmbeddingKind::Minilm => Err(PipelineError::bad_input(format!(
-                "{}: these are not the published weights and vocabulary of {MINILM_NAME}; to use them all the same, name \
-                 the folder with --model-dir",
-                weights.folder.display()
-            ))),
+            Ok(_) if kind == EmbeddingKind::Minilm => Err(PipelineError::choose(
+                format!(
+                    "{}: these are not the published weights and vocabulary of {MINILM_NAME}; to use them all the same, \
+                     name the folder",
+                    weights.folder.display()
+                ),
+                Choice::ModelFolder,
+            )),
             other => {
                 let what = other.map_or_else(|e| e.to_string(), |_| "they are not the published ones".to_owned());
                 let message =
                     format!("the files of {MINILM_NAME} in {} were passed over: {what}", weights.source.label());
                 let remark =
                     Diagnostic::new(Severity::Warning, "select.weights-passed-over", Location::default(), message)
-                        .with_hint(
-                            "mend the files, or name their folder with --model-dir; `recrash model show` names it",
-                        );
+                        .with_hint("mend the files, or name their folder; `recrash model show` names it");
                 Ok((Self::Lexical, vec![remark]))
             }
         }

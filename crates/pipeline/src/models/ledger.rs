@@ -160,7 +160,7 @@ fn exchange_files(dir: &Path) -> Result<Vec<String>, PipelineError> {
         Ok(entries) => entries,
         Err(e) if e.kind() == std::io::ErrorKind::NotFound => {
             return Err(PipelineError::bad_input(format!(
-                "{} holds no ledger: no language model was asked for it (recrash run --help tells how)",
+                "{} holds no ledger: no language model was asked for it",
                 dir.display()
             )));
         }

@@ -1,6 +1,6 @@
 //! Crash files from disk into the first stage, and records from it onto the disk as tables.
 
-use crate::error::PipelineError;
+use crate::error::{Choice, PipelineError};
 use crate::files::output::{Output, Outputs};
 use crate::files::store::{io, read_bytes, read_text};
 use crate::options::{Options, RecordSource};
@@ -134,7 +134,7 @@ pub(crate) fn incidents(set: &RecordSet) -> Vec<Incident> {
 /// It cannot be read: with its column.
 pub fn read_filter(options: &Options) -> Result<Option<Filter>, PipelineError> {
     let read = options.filter.as_deref().map(Filter::parse).transpose();
-    read.map_err(|e| PipelineError::bad_input(format!("the filter, {e}\n  recrash records --help lists the fields")))
+    read.map_err(|e| PipelineError::choose(format!("the filter, {e}"), Choice::Filter))
 }
 
 /// A file by its path; a bare name that is no file here is looked up among the downloaded ones.

@@ -186,7 +186,11 @@ fn edit_remark(stage: &str, id: &str, course: Course) -> Option<Diagnostic> {
     };
     let location = Location { file: Some(id.to_owned()), ..Location::default() };
     let remark = Diagnostic::new(severity, "suite.edited", location, format!("{stage}: {message}"));
-    Some(if severity == Severity::Warning { remark.with_hint("--discard-edits makes it anew") } else { remark })
+    Some(if severity == Severity::Warning {
+        remark.with_hint("where edits are discarded it is made anew")
+    } else {
+        remark
+    })
 }
 
 /// Runs a stage that works case by case, without the cases that failed before.

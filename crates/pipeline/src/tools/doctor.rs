@@ -100,7 +100,7 @@ pub fn doctor(request: &DoctorRequest) -> Vec<DoctorItem> {
 
 fn python(python: &Path) -> DoctorItem {
     let (name, needed_for) = ("Python", "MetaDrive, Scenic, CommonRoad");
-    let hint = "install Python 3.7 to 3.11, or name another interpreter with --python";
+    let hint = "install Python 3.7 to 3.11, or name another interpreter";
     match ask(python, &["-c", "import sys; print('%d.%d.%d %s' % (*sys.version_info[:3], sys.executable))"]) {
         Ok(text) => DoctorItem::ready(name, needed_for, text),
         Err(Silence::NotThere) => DoctorItem::missing(name, needed_for, hint),
@@ -109,7 +109,7 @@ fn python(python: &Path) -> DoctorItem {
 }
 
 fn metadrive(python: &Path, runs: bool) -> DoctorItem {
-    let (name, needed_for) = ("MetaDrive", "--sim metadrive, recrash parity");
+    let (name, needed_for) = ("MetaDrive", "the simulator metadrive, recrash parity");
     if !runs {
         return DoctorItem::missing(name, needed_for, INSTALL_HINT);
     }

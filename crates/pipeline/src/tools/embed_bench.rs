@@ -1,7 +1,7 @@
 //! Our MiniLM beside sentence-transformers: the same texts, the same weights, the same threads, in turn in one run.
 
 use crate::embedding::weights::{find_weights, load};
-use crate::error::PipelineError;
+use crate::error::{Choice, PipelineError};
 use crate::options::Options;
 use crate::reading::records::read_records;
 use rayon::prelude::*;
@@ -87,7 +87,7 @@ pub fn bench_embedding(request: &EmbedBenchRequest) -> Result<EmbedBench, Pipeli
     let readable = records.iter().filter(|record| record.redaction == Redaction::Open);
     let texts: Vec<&str> = readable.map(|record| record.narrative.as_str()).take(request.count).collect();
     if texts.is_empty() {
-        return Err(PipelineError::bad_input("no readable narrative to embed; give a crash file with --records"));
+        return Err(PipelineError::choose("no readable narrative to embed; give a crash file", Choice::Records));
     }
     let given = request.options.model_dir.clone();
     let folder = given.or_else(|| find_weights(&request.python).map(|weights| weights.folder)).ok_or_else(|| {
@@ -162,9 +162,10 @@ impl Python {
         command.args(["-c", SCRIPT]);
         command.env("OMP_NUM_THREADS", threads.to_string()).env("TOKENIZERS_PARALLELISM", "false");
         let started = Program::start(&mut command, MAX_ANSWER_BYTES);
-        let mut this = Self(started.map_err(|e| {
-            failed(&format!("cannot start {}: {e}; name another with --python", interpreter.display()))
-        })?);
+        let mut this =
+            Self(started.map_err(|e| {
+                failed(&format!("cannot start {}: {e}; name another interpreter", interpreter.display()))
+            })?);
         let task = serde_json::to_string(&Task { model, threads, texts }).unwrap_or_default();
         let hello = this.ask(&task)?;
         let name = hello.name.ok_or_else(|| failed("it did not tell its name"))?;

@@ -7,7 +7,7 @@ mod told;
 pub use labels::{Half, Label};
 pub use recrash_lab::evaluation::{Field, FieldScore, TwoReaders};
 
-use crate::error::PipelineError;
+use crate::error::{Choice, PipelineError};
 use crate::files::store::{Store, read_bytes, read_text, write_file_whole};
 use crate::models::cast::{Cast, RULES, reading_brief, unusable};
 use crate::models::{ModelAccess, Models};
@@ -123,7 +123,7 @@ pub fn evaluate(request: &EvaluationRequest) -> Result<Evaluation, PipelineError
         labels.iter().filter_map(|label| Some((label, find(&label.record)?))).collect();
     if found.is_empty() {
         return Err(PipelineError::BadInput {
-            what: "none of the labelled records is in the crash files; give NHTSA's files with --records".into(),
+            what: "none of the labelled records is in the crash files; give NHTSA's files".into(),
             diagnostics: missing.iter().take(8).map(missing_record).collect(),
         });
     }
@@ -252,9 +252,9 @@ fn crash_records(files: &[PathBuf], profile: &SystemProfile) -> Result<Vec<Crash
         files => files.iter().map(|file| cached_or(file)).collect(),
     };
     if paths.is_empty() {
-        return Err(PipelineError::bad_input(
-            "there are no crash files to evaluate on; give NHTSA's with --records, or download them: \
-             recrash fetch --edition archive, and recrash fetch",
+        return Err(PipelineError::choose(
+            "there are no crash files to evaluate on; give NHTSA's, or download them",
+            Choice::Records,
         ));
     }
     let files = paths.iter().map(|path| Ok((path.to_string_lossy().into_owned(), read_bytes(path, MAX_CRASH_FILE)?)));

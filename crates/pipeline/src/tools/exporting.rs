@@ -1,6 +1,6 @@
 //! Exports of a suite or of one scenario file.
 
-use crate::error::PipelineError;
+use crate::error::{Choice, PipelineError};
 use crate::files::output::Outputs;
 use crate::files::paths;
 use crate::files::store::{Store, io};
@@ -136,10 +136,10 @@ fn only_of_this_export(
     for (_, folder) in filled {
         let entries = std::fs::read_dir(folder).map_err(|source| io("read", folder, source))?;
         if entries.flatten().any(|entry| !ours.contains(&entry.path())) {
-            return Err(PipelineError::bad_input(format!(
-                "{} holds other files already; add --force to overwrite them, or choose another --to-dir",
-                folder.display()
-            )));
+            return Err(PipelineError::choose(
+                format!("{} holds other files already", folder.display()),
+                Choice::ExportFolder,
+            ));
         }
     }
     Ok(())

@@ -1,6 +1,6 @@
 //! Scenarios of other formats read back: our OpenSCENARIO, and the paper's JSON dialect.
 
-use crate::error::PipelineError;
+use crate::error::{Choice, PipelineError};
 use crate::files::output::Outputs;
 use crate::files::paths;
 use crate::files::store::read_text;
@@ -66,10 +66,7 @@ pub fn import(request: &ImportRequest) -> Result<Imported, PipelineError> {
     let file = request.target.map_or_else(|| PathBuf::from(format!("{}.json", scenario.id)), Path::to_owned);
     let output = Outputs::of_inputs([source.to_owned()]).claim(&file)?;
     if !request.force && output.replaces() {
-        return Err(PipelineError::bad_input(format!(
-            "{} is there already; add --force to overwrite it, or choose another --out",
-            file.display()
-        )));
+        return Err(PipelineError::choose(format!("{} is there already", file.display()), Choice::ImportFile));
     }
     output.write(write_draft(&scenario).as_bytes())?;
     Ok(Imported { file, read_as, scenario, diagnostics: read.diagnostics })

@@ -1,6 +1,6 @@
 //! What a model would be asked, shown without asking it.
 
-use crate::error::PipelineError;
+use crate::error::{Choice, PipelineError};
 use crate::models::cast::RULES;
 use crate::options::Options;
 use crate::progress::NoProgress;
@@ -100,9 +100,7 @@ fn find(request: &PromptRequest, cases: &Cases) -> Result<Cluster, PipelineError
         let records = &cases.records.records;
         let found = records.iter().enumerate().find(|(_, record)| record.id.to_string() == *id);
         let Some((pick_index, record)) = found else {
-            return Err(PipelineError::bad_input(format!(
-                "there is no record {id}; recrash records --csv FILE lists them"
-            )));
+            return Err(PipelineError::choose(format!("there is no record {id}"), Choice::Record));
         };
         let template = record.template().ok_or_else(|| {
             PipelineError::bad_input(format!("record {id} has no template: its columns name no road or movement"))

@@ -568,9 +568,10 @@ fn searched(file: &Path) -> Result<Option<Vec<Parameter>>, PipelineError> {
 fn varied(draft: &ScenarioDraft, vary: &[Vary], name: &str) -> Result<Vec<Parameter>, PipelineError> {
     let document = serde_json::to_value(draft).unwrap_or_default();
     let parameter = |vary: &Vary| {
-        let number = document.pointer(&vary.pointer).filter(|value| value.is_number()).ok_or_else(|| {
-            PipelineError::bad_input(format!("--vary {}: there is no such number in {name}", vary.pointer))
-        })?;
+        let number = document
+            .pointer(&vary.pointer)
+            .filter(|value| value.is_number())
+            .ok_or_else(|| PipelineError::bad_input(format!("{}: there is no such number in {name}", vary.pointer)))?;
         Ok(Parameter {
             pointer: vary.pointer.clone(),
             unit: String::new(),
@@ -578,7 +579,7 @@ fn varied(draft: &ScenarioDraft, vary: &[Vary], name: &str) -> Result<Vec<Parame
             max: vary.max,
             start: number.as_f64().unwrap_or(vary.min),
             integer: !number.is_f64(),
-            reason: "--vary".to_owned(),
+            reason: "asked for".to_owned(),
         })
     };
     vary.iter().map(parameter).collect()

@@ -6,7 +6,7 @@ mod sources;
 pub(crate) use open::Opened;
 pub use sources::crash_types;
 
-use crate::error::PipelineError;
+use crate::error::{Choice, PipelineError};
 use crate::files::folders::must_be_free;
 use crate::files::json::to_json;
 use crate::files::paths;
@@ -187,7 +187,8 @@ fn may_be_made(request: &FreezeRequest) -> Result<(), PipelineError> {
         return refused("what is read lies in it; name another folder");
     }
     if out.join(FROZEN_FILE).is_file() && !request.replace {
-        return refused("it holds a frozen suite; name another folder, or replace it (--replace)");
+        let what = format!("{}: it holds a frozen suite; name another folder, or replace it", out.display());
+        return Err(PipelineError::choose(what, Choice::FrozenSuite));
     }
     must_be_free(out, Some(FROZEN_FILE))
 }

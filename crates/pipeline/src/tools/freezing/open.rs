@@ -27,7 +27,7 @@ impl Opened {
         let list = dir.join(FROZEN_FILE);
         if !list.is_file() {
             let why = match dir.join(SUITE_FILE).is_file() {
-                true => format!("it is a suite; freeze it first: `recrash freeze {} --out nightly`", dir.display()),
+                true => "it is a suite; `recrash freeze` makes a frozen one of it".to_owned(),
                 false => {
                     format!("there is no {FROZEN_FILE} in it, so it is no frozen suite; `recrash freeze` makes one")
                 }

@@ -181,7 +181,7 @@ fn tell(tests: &mut [Test], file: &Path) -> Result<(), PipelineError> {
     let text = read_text(file, MAX_ABOUT)?;
     let read: AllTold = from_json(text.as_bytes()).map_err(|misread| {
         let why = format!("{}: {misread}", file.display());
-        PipelineError::bad_input(format!("{why}; what `recrash reconstruct --json` prints is read"))
+        PipelineError::bad_input(format!("{why}; what `recrash reconstruct` prints as JSON is read"))
     })?;
     let by_report: BTreeMap<String, &Told> =
         read.reconstructions.iter().map(|told| (told.report.clone(), told)).collect();
