@@ -10,7 +10,7 @@ use recrash_model::rollout::ActorTrack;
 use recrash_model::scenario::StripKind;
 use recrash_roads::{RoadNetwork, RoadPart, Scenario};
 
-/// Who is in a lane is no farther beside the middle of it. [m]
+/// Who is in a lane, and in no other one besides, is no farther beside the middle of it. [m]
 const KEEPS_M: f64 = 0.7;
 
 pub(super) fn lane_words(word: LaneWord) -> &'static str {
@@ -64,13 +64,20 @@ pub(super) fn lane(
     let against = math::wrap_angle(way.heading(s_m) - first.heading).abs() > math::FRAC_PI_2;
     // Who is narrow may be anywhere in it.
     let drives = track.kind != PartnerKind::FixedObject;
-    let most_m = if drives { KEEPS_M.max(0.5 * (way.width_at(s_m) - track.width_m)) } else { way.width_at(s_m) };
+    let over = [&told.sv, &told.cp][usize::from(ego.id != track.id)].astride.is_some();
+    let most_m = if over {
+        0.5 * way.width_at(s_m)
+    } else if drives {
+        KEEPS_M.max(0.5 * (way.width_at(s_m) - track.width_m))
+    } else {
+        way.width_at(s_m)
+    };
     if word != LaneWord::Opposing && (against || t_m.abs() > most_m) {
         let how = if against { "against its direction" } else { "beside its middle" };
         return (CheckResult::NotShown, format!("lane {} of {}, {how}", number + 1, lanes.len()));
     }
     let last = lanes.len() - 1;
-    let shown = match word {
+    let holds = |number: usize| match word {
         // Beside the driving lanes.
         _ if matches!(road.part, RoadPart::Beside(_)) => false,
         LaneWord::Left if ego.id == track.id && told.layout.turn_lane => number == 1,
@@ -89,10 +96,15 @@ pub(super) fn lane(
             let heading = network.lane(id).heading(0.0) - own;
             math::wrap_angle(heading).abs() > math::FRAC_PI_2
         }
-        LaneWord::Bike | LaneWord::Bus | LaneWord::Shoulder | LaneWord::Curb | LaneWord::Sidewalk => {
-            return (CheckResult::CannotBeShown, "no such lane is drawn".to_owned());
-        }
+        LaneWord::Bike | LaneWord::Bus | LaneWord::Shoulder | LaneWord::Curb | LaneWord::Sidewalk => false,
     };
+    if word == LaneWord::Bus && !matches!(road.part, RoadPart::Beside(_)) {
+        return (CheckResult::CannotBeShown, "no such lane is drawn".to_owned());
+    }
+    // Who is told partly in two is in that one, too, into which its body reaches.
+    let reaches = over && t_m.abs() + 0.5 * track.width_m > 0.5 * way.width_at(s_m);
+    let next = if t_m > 0.0 { Some(number + 1).filter(|next| *next <= last) } else { number.checked_sub(1) };
+    let shown = holds(number) || next.filter(|_| reaches).is_some_and(holds);
     let result = if shown { CheckResult::Shown } else { CheckResult::NotShown };
     (result, format!("lane {} of {}, from the left", number + 1, lanes.len()))
 }
