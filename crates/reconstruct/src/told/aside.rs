@@ -20,7 +20,7 @@ const LEAVES_KERB_M: f64 = 1.2;
 
 /// Who leaves its line in two goes has done so much of that at the end of the first; who stands over the line between two lanes there. [-]
 const FIRST_PART: f64 = 0.3;
-const FIRST_PART_OVER: f64 = 0.45;
+const FIRST_PART_OVER: f64 = 0.4;
 
 /// Who pulls out has left the kerb by so much. [m]
 const PULLS_OUT_M: f64 = 1.5;
