@@ -95,8 +95,9 @@ def strip_widths(strips: list[dict]) -> list[tuple[str, float, float]]:
     return found
 
 
-def on_strip(road: dict, junctions: dict[str, dict], state: dict) -> str | None:
-    """On which strip of a straight road a centre is, as the ego's driver would say it; nothing where it is beside the road."""
+def beside(road: dict, junctions: dict[str, dict], state: dict) -> tuple[float, float, float] | None:
+    """Of a straight road: how far to the left of its line a centre is, the angle to the line, and the sign of its own direction along it;
+    nothing where the centre is not beside the line."""
     start = road["start"].get("at")
     if start is None:
         arm = road["start"]["arm"]
@@ -108,6 +109,17 @@ def on_strip(road: dict, junctions: dict[str, dict], state: dict) -> str | None:
     along, left = dx * math.cos(angle) + dy * math.sin(angle), dy * math.cos(angle) - dx * math.sin(angle)
     if not 0 <= along <= sum(piece["straight"]["length_m"] for piece in road["line"]):
         return None
+    turned = math.remainder(state["heading"] - angle, math.tau)
+    return left, abs(math.sin(turned)), 1.0 if math.cos(turned) > 0 else -1.0
+
+
+def on_strip(road: dict, junctions: dict[str, dict], actor: dict, state: dict) -> str | None:
+    """On which strip of a straight road a centre is, as the ego's driver would say it, and how far the body reaches over the edges of that;
+    nothing where it is beside the road."""
+    found = beside(road, junctions, state)
+    if found is None:
+        return None
+    left, slant, gear = found
     side = "left" if left > 0 else "right"
     strips = strip_widths(road[side])
     kind = next((kind for kind, near, far in strips if near <= abs(left) <= far), None)
@@ -121,12 +133,38 @@ def on_strip(road: dict, junctions: dict[str, dict], state: dict) -> str | None:
     lanes = [(near, far) for name, near, far in strips if name == "driving"]
     number = next((n for n, (near, far) in enumerate(lanes, 1) if near <= abs(left) <= far), None)
     what = f"lane {number} of {len(lanes)} from the middle" if number and kind == "driving" else f"the {kind} strip"
-    return f"{what} {to if leads else fro} of road '{road['id']}'"
+    over = "".join(f", {reach}" for reach in reaches(road, actor, left, slant, gear))
+    return f"{what} {to if leads else fro} of road '{road['id']}'{over}"
 
 
-def stands_on(draft: dict, state: dict) -> str:
+# Whose body is at more than this to the road lies across it; less than this over an edge nobody sees. [sine, m]
+ACROSS, LEAST_OVER_M = 0.5, 0.1
+
+
+def reaches(road: dict, actor: dict, left: float, slant: float, gear: float) -> list[str]:
+    """Over which edges of the strip that its centre is on a body reaches, by how much, and into what, by its own left and right."""
+    if slant > ACROSS:
+        return []
+    half = 0.5 * (actor["width_m"] * math.sqrt(1 - slant**2) + actor["length_m"] * slant)
+    # Every strip from the left of the line to the right of it.
+    strips = [(kind, near, far) for kind, near, far in strip_widths(road["left"])]
+    strips += [(kind, -far, -near) for kind, near, far in strip_widths(road["right"])]
+    own = next(((near, far) for _, near, far in strips if near <= left <= far), None)
+    found = []
+    for kind, near, far in strips:
+        by = min(far, left + half) - max(near, left - half)
+        if own is None or (near, far) == own or by < LEAST_OVER_M:
+            continue
+        to_left = (near >= own[1]) == (gear > 0)
+        # The next lane is another one of the same direction, or one of the other.
+        name = f"the {kind} strip" if kind != "driving" else "the next lane" if (near < 0) == (own[0] < 0) else "a lane of the other direction"
+        found.append(f"{by:.1f} m over its {'left' if to_left else 'right'} edge into {name}")
+    return found
+
+
+def stands_on(draft: dict, actor: dict, state: dict) -> str:
     junctions = {junction["id"]: junction for junction in draft["map"].get("junctions", [])}
-    found = (on_strip(road, junctions, state) for road in draft["map"]["roads"])
+    found = (on_strip(road, junctions, actor, state) for road in draft["map"]["roads"])
     return next((strip for strip in found if strip), "in the junction or beside the roads")
 
 
@@ -168,7 +206,7 @@ def shown(recrash: str, scene: Path, folder: Path) -> str:
         for a in actors)]
     for name, step in (("start", 0), ("contact", min(int(contact * 10), len(ego) - 1))):
         there = [a for a in actors if a["role"] != "part" and a.get("appears_s", 0) <= step / 10 < a.get("gone_s", math.inf)]
-        lines.append(f"Centres at the {name}: " + "; ".join(f"{a['id']}: {stands_on(draft, a['states'][step])}" for a in there))
+        lines.append(f"Centres at the {name}: " + "; ".join(f"{a['id']}: {stands_on(draft, a, a['states'][step])}" for a in there))
     for part in (a for a in actors if a["role"] == "part" and a["length_m"] < 1.5):
         owner, step = actors[part["part_of"]], min(int(contact * 10), len(ego) - 1)
         opened = degrees(part["states"][step]["heading"] - owner["states"][step]["heading"])

@@ -308,6 +308,12 @@ pub enum CheckKind {
     SvLane,
     /// Lane of the partner when the scene begins.
     CpLane,
+    /// The ego's body over the told line of the road, when it is told there.
+    SvAstride,
+    /// The partner's.
+    CpAstride,
+    /// Those of others.
+    OthersAstride,
     /// What the ego's signal or sign showed, and whether it obeyed it.
     SvControl,
     /// The same of the partner's.
@@ -324,7 +330,7 @@ pub enum CheckKind {
 
 impl CheckKind {
     /// Those that an account is held to, in the order of tables.
-    pub const OF_ACCOUNTS: [Self; 22] = [
+    pub const OF_ACCOUNTS: [Self; 25] = [
         Self::Contact,
         Self::Partner,
         Self::SvZones,
@@ -342,6 +348,9 @@ impl CheckKind {
         Self::PassedOn,
         Self::SvLane,
         Self::CpLane,
+        Self::SvAstride,
+        Self::CpAstride,
+        Self::OthersAstride,
         Self::SvControl,
         Self::CpControl,
         Self::Reason,
@@ -374,6 +383,9 @@ impl CheckKind {
             Self::PassedOn => "thrown by another",
             Self::SvLane => "SV lane",
             Self::CpLane => "CP lane",
+            Self::SvAstride => "SV over a line",
+            Self::CpAstride => "CP over a line",
+            Self::OthersAstride => "others over a line",
             Self::SvControl => "SV signal or sign",
             Self::CpControl => "CP signal or sign",
             Self::Reason => "why the SV stood",

@@ -5,12 +5,14 @@
 //! each of its facts can be held against a rollout.
 
 mod acts;
+mod astride;
 mod place;
 mod set;
 mod types;
 mod untold;
 
 pub use acts::{Act, ActFact, ContactState, LeftRight, Manner, Speed, SpeedMeaning, StandReason, Standing};
+pub use astride::{Astride, AstrideWhen, LaneLine};
 pub use place::{Compass, Control, ControlDevice, LaneWord, Obeyed, Place, PlaceKind, RoadFeature, SignalState};
 pub use set::{ACCOUNTS_FORMAT, AccountSet, FactShare, TypeShare, UntoldIncident};
 pub use types::{
@@ -202,6 +204,9 @@ pub struct Party {
     pub heading_after: Option<Fact<Compass>>,
     /// Its lane, first told.
     pub lane: Option<Fact<LaneWord>>,
+    /// Over which line of the road its body reaches, who is partly in one lane and partly elsewhere.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub astride: Option<Fact<Astride>>,
     /// Speeds told, with what they mean.
     pub speeds: Vec<Fact<Speed>>,
     /// Where it was touched; empty where that is not told.
@@ -233,6 +238,9 @@ pub struct Other {
     pub several: bool,
     /// What it did, in order.
     pub acts: Vec<ActFact>,
+    /// Over which line of the road its body reaches, who is partly in one lane and partly elsewhere.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub astride: Option<Fact<Astride>>,
     /// It touched the partner, or the partner it, before the contact with the subject vehicle.
     pub touched_partner: bool,
     /// How, where that is told.

@@ -146,28 +146,6 @@ fn in_a_lane(reading: &Reading<'_>, frame: &Frame) -> Option<usize> {
     (word(lane) == "lane").then_some(lane + 1)
 }
 
-/// So many words stand between a stand and those for how much of it is in the lane, at most. [tokens]
-const TO_PARTLY: usize = 10;
-
-/// "was parked near the curb, partially in the right lane": the token behind it; not of who stands between two lanes.
-fn partly_in_lane(reading: &Reading<'_>, frame: &Frame) -> Option<usize> {
-    let sentence = reading.story.sentences[frame.sentence];
-    let next = reading.story.frames.iter().map(|other| other.first).filter(|first| *first >= frame.end).min();
-    let end = sentence.end.min(next.unwrap_or(sentence.end));
-    let word = |at: usize| if at < end { reading.story.tokens[at].text.as_str() } else { "" };
-    let partly = |at: &usize| matches!(word(*at), "partially" | "partly" | "partway" | "halfway");
-    let at = (frame.end..frame.end + TO_PARTLY).find(partly)?;
-    let way = Some(at + 2).filter(|_| matches!(word(at + 1), "in" | "within"))?;
-    let named = |at: &usize| {
-        let word = word(*at);
-        matches!(word, "the" | "a" | "its" | "travel" | "driving" | "traffic" | "vehicle" | "right" | "rightmost")
-            || word.ends_with("bound")
-    };
-    let lane = (way..end).find(|at| !named(at))?;
-    let between = partly(&(lane + 1)) || word(lane + 1) == "and" && partly(&(lane + 2));
-    (word(lane) == "lane" && !between).then_some(lane + 1)
-}
-
 /// The words of an act.
 pub(super) fn words(reading: &Reading<'_>, frame: &Frame, act: Act) -> Source {
     let (first, end) = match act {
@@ -210,7 +188,7 @@ pub(super) fn of_door(reading: &Reading<'_>, frame: &Frame) -> (usize, usize) {
 /// The token behind the words of an act: of who goes into or through an intersection, or stands in a lane, up to that word.
 fn reach(reading: &Reading<'_>, frame: &Frame, act: Act) -> usize {
     if matches!(act, Act::Hold | Act::Stop | Act::Park) {
-        return in_a_lane(reading, frame).or_else(|| partly_in_lane(reading, frame)).unwrap_or(frame.end);
+        return in_a_lane(reading, frame).unwrap_or(frame.end);
     }
     let word = |at: usize| reading.story.tokens[at].text.as_str();
     let end = reading.story.sentences[frame.sentence].end;

@@ -2,6 +2,7 @@
 
 mod across;
 mod acts;
+mod astride;
 mod begun;
 mod contact;
 mod controls;
@@ -534,6 +535,7 @@ fn others(reading: &Reading<'_>) -> Vec<Other> {
             place: whereabouts::place_of(reading, actor),
             several: known.several,
             acts: acts::stood_alongside(reading, actor, acts),
+            astride: astride::astride(reading, actor),
             touched_partner,
             touch: touch.and_then(|frame| touched::earlier(reading, frame)),
         });

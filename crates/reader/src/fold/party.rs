@@ -2,6 +2,7 @@
 
 use super::Reading;
 use super::acts::acts;
+use super::astride::astride;
 use super::controls::controls;
 use super::open::is_any_truck;
 use super::speeds::speeds;
@@ -13,8 +14,8 @@ use crate::frame::Frame;
 use crate::lexicon::{Relation, Sense};
 use crate::world::{Actor, SUBJECT, is_no_passenger_vehicle};
 use recrash_model::account::{
-    Account, Act, Compass, ContactState, Fact, Kind, KindGroup, LaneWord, LeftRight, Origin, Party, Speed,
-    SpeedMeaning, told,
+    Account, Act, Astride, Compass, ContactState, Fact, Kind, KindGroup, LaneWord, LeftRight, Origin, Party, Source,
+    Speed, SpeedMeaning, told,
 };
 use recrash_model::kinds::PartnerKind;
 use recrash_model::record::Coded;
@@ -57,6 +58,7 @@ pub(crate) fn party(reading: &Reading<'_>, actor: Actor) -> Party {
             .or_else(|| in_the_same_lane(reading, actor))
             .or_else(|| in_the_lane_of_the_other_way(reading, actor))
             .map(|(lane, first, end)| reading.told(lane, first, end)),
+        astride: astride(reading, actor),
         speeds: speeds(reading, actor),
         zones: zones(reading, actor),
         controls: controls(reading, actor),
@@ -64,7 +66,19 @@ pub(crate) fn party(reading: &Reading<'_>, actor: Actor) -> Party {
     if told(&party.state).is_some_and(ContactState::stands) || (party.state.is_none() && actor == SUBJECT) {
         party.reasons = reasons(reading, actor);
     }
+    party.lane = party.lane.take().filter(|lane| !is_strip_beside(lane, party.astride.as_ref()));
     party
+}
+
+/// "partially in the parking lane": and partly beside it, in a lane.
+fn is_strip_beside(lane: &Fact<LaneWord>, astride: Option<&Fact<Astride>>) -> bool {
+    let span = |source: &Source| match source {
+        Source::Words { start, end, .. } => Some((*start, *end)),
+        _ => None,
+    };
+    let strip = matches!(lane.value, LaneWord::Curb | LaneWord::Bike | LaneWord::Shoulder);
+    let inside = |(of, within): ((usize, usize), (usize, usize))| within.0 <= of.0 && of.1 <= within.1;
+    strip && span(&lane.source).zip(astride.and_then(|fact| span(&fact.source))).is_some_and(inside)
 }
 
 /// "was waiting in the center lane. A van coming up in the same lane": in that of the subject vehicle.

@@ -1,6 +1,6 @@
 //! What the reader's tests share: records around narratives, and accounts as plain words.
 
-use recrash_model::account::{Account, Act, ControlDevice, Fact, Origin, Party, RoadFeature};
+use recrash_model::account::{Account, Act, Astride, ControlDevice, Fact, Origin, Party, RoadFeature};
 use recrash_model::record::{Coded, CrashRecord, Edition, Provenance, RecordRef, Redaction};
 use serde::Serialize;
 use serde_json::Value;
@@ -89,6 +89,11 @@ fn acts(party: &Party) -> String {
     all.join(" ")
 }
 
+fn over(fact: &Fact<Astride>) -> String {
+    let side = fact.value.side.map(|side| format!("_{}", coded(&side))).unwrap_or_default();
+    format!("{}{side} {}", coded(&fact.value.line), coded(&fact.value.when))
+}
+
 fn zones(party: &Party) -> String {
     party.zones.iter().map(|zone| coded(&zone.value)).collect::<Vec<_>>().join(" ")
 }
@@ -111,6 +116,8 @@ pub fn facts(account: &Account) -> BTreeMap<&'static str, String> {
         .filter(|fact| !fact.after_contact)
         .map(|fact| coded(&fact.act))
         .collect();
+    let other_lines: Vec<String> =
+        account.others.iter().filter_map(|other| Some(coded(&other.astride.as_ref()?.value.line))).collect();
     let matrix =
         account.matrix.as_ref().map(|fact| format!("{} {}", coded(&fact.value.object), coded(&fact.value.event)));
     let ran = partner.did(Act::RunRed) || partner.did(Act::RunStop);
@@ -143,6 +150,9 @@ pub fn facts(account: &Account) -> BTreeMap<&'static str, String> {
         ("other_places", other_places.join(" ")),
         ("other_acts", other_acts.join(" ")),
         ("sv_lane", name(&sv.lane)),
+        ("sv_astride", sv.astride.as_ref().map(over).unwrap_or_default()),
+        ("cp_astride", partner.astride.as_ref().map(over).unwrap_or_default()),
+        ("others_astride", other_lines.join(" ")),
         ("sv_heading", name(&sv.heading)),
         ("cp_heading", name(&partner.heading)),
         ("sv_controls", controls.join(" ")),

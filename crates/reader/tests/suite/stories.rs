@@ -1,7 +1,7 @@
 //! The reader on mini narratives of our own: `stories.toml`, a case a behaviour, `families.toml`, each kind of crash in many
 //! wordings, `wordings.toml`, what was misread in many, `newer.toml`, what was misread in a newer edition, `whose.toml`, acts and
 //! places given to the wrong one, `time.toml`, what is told first and happens later, `grammar.toml`, who does what in retold reports, and
-//! `places.toml`, their words and places.
+//! `places.toml`, their words and places, and `astride.toml`, who is partly in one lane and partly elsewhere.
 
 use crate::common::{self, account_of, facts};
 use recrash_model::account::{Act, Obeyed, Source};
@@ -34,6 +34,7 @@ fn stories() -> Vec<Story> {
         include_str!("time.toml"),
         include_str!("grammar.toml"),
         include_str!("places.toml"),
+        include_str!("astride.toml"),
     ];
     files.iter().flat_map(|text| toml::from_str::<File>(text).unwrap().story).collect()
 }

@@ -8,7 +8,7 @@ use crate::told::aside::Aside;
 use crate::told::crash::Told;
 use crate::told::side::size_of;
 use crate::usual::{LANE_M, beyond_m};
-use recrash_model::account::ContactState;
+use recrash_model::account::{AstrideWhen, ContactState};
 use recrash_model::geometry::{Pose, Vec2};
 use recrash_model::rollout::{ActorState, STEP_S};
 use recrash_model::scenario::{
@@ -147,9 +147,10 @@ const FIRST_PART_OVER_M: f64 = 12.0;
 const PULLS_OVER_M: f64 = 20.0;
 const AT_KERB_M: f64 = 1.0;
 
-/// Whether the ego comes to the kerb where it is parked.
+/// Whether the ego comes to the kerb where it is parked, or over the line where it stops.
 fn pulls_over(told: &Told, ground: &Ground) -> bool {
-    told.sv.state == ContactState::Stopped && told.is_at_kerb() && ground.stands_m != 0.0
+    let over = told.stands_over().is_some_and(|over| over.when == AstrideWhen::Stop);
+    told.sv.state == ContactState::Stopped && (told.is_at_kerb() || over) && ground.stands_m != 0.0
 }
 
 /// Who leaves a line and comes back to it does the first in so long, on so much of its way, and is on the other one for so long.

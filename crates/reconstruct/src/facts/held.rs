@@ -1,6 +1,7 @@
 //! Told facts, held against a rollout: who was where when. Of the scenario only its roads, signals and stops are read.
 
 use crate::facts::acts::{self, Did};
+use crate::facts::astride::astride;
 use crate::facts::contact::{
     self, MET_M, Touch, crash, first_touch, is_near, order, parts_that_touch, swung, toucher, zone_words,
 };
@@ -19,7 +20,7 @@ use crate::told::rig::Rig;
 use crate::told::side::Side;
 use crate::touch::opening::{self, DOOR_M};
 use recrash_metrics::contact::{ContactGeometry, contact_geometry};
-use recrash_model::account::{Control as Said, ControlDevice, Kind, Obeyed, Origin, StandReason, Striker};
+use recrash_model::account::{Astride, Control as Said, ControlDevice, Kind, Obeyed, Origin, StandReason, Striker};
 use recrash_model::geometry::OrientedBox;
 use recrash_model::metrics::{Check, CheckKind, CheckResult};
 use recrash_model::rollout::{ActorState, ActorTrack, Rollout, STEP_S};
@@ -105,6 +106,7 @@ impl<'a> Crash<'a> {
         list.extend(self.approach());
         list.extend(self.order());
         list.extend(self.lanes());
+        list.extend(self.astride());
         list.extend(self.controls());
         list.extend(self.reason());
         list.extend(self.others());
@@ -352,6 +354,28 @@ impl<'a> Crash<'a> {
             let seen = lane((self.told, word), self.scenario, [self.ego_track, track], self.touch.time_s);
             Some(held(kind, expected, seen))
         })
+    }
+
+    /// Whether those are over a line of the road who are told to be.
+    fn astride(&self) -> impl Iterator<Item = Check> {
+        let told = self.told;
+        let sides = [
+            (CheckKind::SvAstride, told.sv.astride, Some(self.ego_track)),
+            (CheckKind::CpAstride, told.cp.astride.filter(|_| told.thing.is_none()), self.partner_track),
+        ];
+        let none = || (CheckResult::CannotBeShown, "not in the scene".to_owned());
+        let seen = move |over: Astride, track: Option<&ActorTrack>| {
+            track.map_or_else(none, |track| astride(over, self.scenario, track, self.touch.time_s))
+        };
+        let others = told.others_astride.iter().map(move |(number, over)| {
+            let extra = told.wanted.iter().find(|extra| extra.of.contains(number));
+            held(CheckKind::OthersAstride, over.words(), seen(*over, extra.and_then(|extra| self.seen().find(extra))))
+        });
+        let of_two = sides
+            .into_iter()
+            .filter_map(move |(kind, over, track)| Some(held(kind, over?.words(), seen(over?, track))));
+        // Of several others the one that is not.
+        of_two.chain(others.max_by_key(|check| check.result != CheckResult::Shown))
     }
 
     fn controls(&self) -> impl Iterator<Item = Check> {

@@ -57,6 +57,7 @@ pub(super) fn off_lane_s(told: &Told, scenario: &Scenario, track: &ActorTrack, c
         || told.pulls_out_opposite()
         || told.squeezes_by()
         || told.splits_lanes().is_some()
+        || told.cp_drives_over()
     {
         return None;
     }

@@ -10,7 +10,7 @@ use recrash_model::rollout::ActorTrack;
 use recrash_model::scenario::StripKind;
 use recrash_roads::{RoadNetwork, RoadPart, Scenario};
 
-/// Who is in a lane is no farther beside the middle of it. [m]
+/// Who is in a lane, and in no other one besides, is no farther beside the middle of it. [m]
 const KEEPS_M: f64 = 0.7;
 
 pub(super) fn lane_words(word: LaneWord) -> &'static str {
@@ -38,7 +38,6 @@ pub(super) fn lane(
     time_s: f64,
 ) -> (CheckResult, String) {
     let network = scenario.network();
-    let turn_lanes = if told.turns_abreast() { 2 } else { 1 };
     // Who is told to be on the opposite side went there, or comes from there into its own.
     let at = if word == LaneWord::Opposing && !told.leaves_opposite() {
         ((time_s * 10.0) as usize).min(track.states.len() - 1)
@@ -64,37 +63,59 @@ pub(super) fn lane(
     let against = math::wrap_angle(way.heading(s_m) - first.heading).abs() > math::FRAC_PI_2;
     // Who is narrow may be anywhere in it.
     let drives = track.kind != PartnerKind::FixedObject;
-    let most_m = if drives { KEEPS_M.max(0.5 * (way.width_at(s_m) - track.width_m)) } else { way.width_at(s_m) };
+    let of_ego = ego.id == track.id;
+    let over = if of_ego { told.sv.astride } else { told.cp.astride }.is_some();
+    let most_m = if over {
+        0.5 * way.width_at(s_m)
+    } else if drives {
+        KEEPS_M.max(0.5 * (way.width_at(s_m) - track.width_m))
+    } else {
+        way.width_at(s_m)
+    };
     if word != LaneWord::Opposing && (against || t_m.abs() > most_m) {
         let how = if against { "against its direction" } else { "beside its middle" };
         return (CheckResult::NotShown, format!("lane {} of {}, {how}", number + 1, lanes.len()));
     }
+    let beside = matches!(road.part, RoadPart::Beside(_));
+    if word == LaneWord::Bus && !beside {
+        return (CheckResult::CannotBeShown, "no such lane is drawn".to_owned());
+    }
     let last = lanes.len() - 1;
+    let is = |number: usize| is_told(told, word, of_ego, (number, last));
+    // Who is told partly in two is in that one, too, into which its body reaches.
+    let reaches = over && t_m.abs() + 0.5 * track.width_m > 0.5 * way.width_at(s_m);
+    let next = if t_m > 0.0 { Some(number + 1).filter(|next| *next <= last) } else { number.checked_sub(1) };
     let shown = match word {
         // Beside the driving lanes.
-        _ if matches!(road.part, RoadPart::Beside(_)) => false,
-        LaneWord::Left if ego.id == track.id && told.layout.turn_lane => number == 1,
+        _ if beside => false,
+        LaneWord::Opposing => {
+            // Of who came over from its own side: the ego's.
+            let own = if told.comes_over && !of_ego { first.heading } else { ego.states[0].heading };
+            let heading = network.lane(id).heading(0.0) - own;
+            math::wrap_angle(heading).abs() > math::FRAC_PI_2
+        }
+        _ => is(number) || next.filter(|_| reaches).is_some_and(is),
+    };
+    let result = if shown { CheckResult::Shown } else { CheckResult::NotShown };
+    (result, format!("lane {} of {}, from the left", number + 1, lanes.len()))
+}
+
+/// Whether a driving lane is the told one; of its number and the last one's, 0 is the leftmost.
+fn is_told(told: &Told, word: LaneWord, of_ego: bool, (number, last): (usize, usize)) -> bool {
+    let turn_lanes = if told.turns_abreast() { 2 } else { 1 };
+    match word {
+        LaneWord::Left if of_ego && told.layout.turn_lane => number == 1,
         LaneWord::Left => number == 0,
         LaneWord::Right if told.layout.right_lane => number + 1 == last,
         LaneWord::Right => number == last,
         LaneWord::LeftTurn => number < turn_lanes,
         LaneWord::RightTurn => number + turn_lanes > last,
-        LaneWord::Center if let Some(counted) = told.counted(ego.id == track.id) => {
-            counted.place(lanes.len()) == Some(number)
-        }
-        LaneWord::Center => number > 0 && number < last,
-        LaneWord::Opposing => {
-            // Of who came over from its own side: the ego's.
-            let own = if told.comes_over && ego.id != track.id { first.heading } else { ego.states[0].heading };
-            let heading = network.lane(id).heading(0.0) - own;
-            math::wrap_angle(heading).abs() > math::FRAC_PI_2
-        }
-        LaneWord::Bike | LaneWord::Bus | LaneWord::Shoulder | LaneWord::Curb | LaneWord::Sidewalk => {
-            return (CheckResult::CannotBeShown, "no such lane is drawn".to_owned());
-        }
-    };
-    let result = if shown { CheckResult::Shown } else { CheckResult::NotShown };
-    (result, format!("lane {} of {}, from the left", number + 1, lanes.len()))
+        LaneWord::Center => match told.counted(of_ego) {
+            Some(counted) => counted.place(last + 1) == Some(number),
+            None => number > 0 && number < last,
+        },
+        _ => false,
+    }
 }
 
 /// Whether a road of this part is the told strip; nothing where no such strip is drawn anywhere.

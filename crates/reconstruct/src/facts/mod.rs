@@ -1,6 +1,7 @@
 //! The checks of told facts against a rollout, a file for each kind of fact, and `held` that asks for all. No staging is looked at here.
 
 mod acts;
+mod astride;
 mod contact;
 mod edge;
 pub(crate) mod held;

@@ -153,7 +153,7 @@ impl<'a> Seen<'a> {
         ahead_m > 0.0 && math::hypot(ahead_m, left_m) < within_m && left_m.abs() < LANE_M
     }
 
-    fn find(&self, extra: &Extra) -> Option<&'a ActorTrack> {
+    pub(super) fn find(&self, extra: &Extra) -> Option<&'a ActorTrack> {
         let id = extra.id();
         self.rollout.actors.iter().find(|track| track.id == id)
     }

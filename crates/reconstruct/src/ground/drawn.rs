@@ -66,7 +66,8 @@ pub(crate) fn ground_for(told: &Told) -> Ground {
     let ground = with_way(map, vec!["main+".to_owned()], across, vec![APPROACH_M], false);
     let at_kerb =
         (told.is_at_kerb() || told.sets_off_at_kerb()) && !lot && told.place != PlaceKind::Highway && !one_way;
-    if at_kerb { ground.at_kerb(told.is_partly_in_lane()) } else { ground }
+    let ground = if at_kerb { ground.at_kerb() } else { ground };
+    ground.over_line(told)
 }
 
 /// From where the road begins that the ego turns into to the ego's front, where it meets what stands at the edge of that road, or across

@@ -7,7 +7,7 @@ use crate::told::others::{Extra, Role};
 use crate::told::side::Turning;
 use crate::told::zones::side_of;
 use crate::usual::LANE_M;
-use recrash_model::account::{ContactState, KindGroup, LaneWord, LeftRight, Origin};
+use recrash_model::account::{ContactState, KindGroup, LaneLine, LaneWord, LeftRight, Origin};
 use recrash_model::template::Movement;
 use recrash_model::zones::ContactZone;
 
@@ -52,6 +52,8 @@ pub(super) fn lanes_for(told: &Told, usual: usize) -> usize {
     let between = told.is_beside_other(LeftRight::Left) && told.sv.lane.is_none() && passes_right(told);
     let usual = if between { usual.max(3) } else { usual };
     let more = usize::from(told.more_lanes) + usize::from(told.layout.turn_lane || told.layout.right_lane);
+    let over = told.sv.is_over(LaneLine::Lanes) || told.cp.is_over(LaneLine::Lanes);
+    let usual = if over { usual.max(2) } else { usual };
     let lanes = told.lanes.map_or(usual, usize::from).max(needed.max().unwrap_or(1)) + more;
     lanes.clamp(1, MOST_LANES)
 }
@@ -64,6 +66,7 @@ pub(super) fn usual_lane(told: &Told, lanes: usize, one_way: bool) -> usize {
     let to_right = told.sv_aside().is_some_and(|aside| aside.to_t_m >= LANE_M);
     match lanes {
         _ if one_way => 0,
+        _ if told.sv.is_over(LaneLine::Centre) || told.cp.is_over(LaneLine::Centre) => 0,
         _ if told.edge == Some(LeftRight::Left) || told.layout.left_to_come || told.is_met_over_line() => 0,
         2.. if told.edge.is_none() && (to_right || passes_right(told) || told.is_beside_other(LeftRight::Right)) => {
             lanes - 2

@@ -2,8 +2,10 @@
 
 use crate::ground::pieces::{APPROACH_M, corner_m};
 use crate::told::aside::Aside;
+use crate::told::astride::INSIDE_M;
+use crate::told::crash::Told;
 use crate::usual::LANE_M;
-use recrash_model::account::LaneWord;
+use recrash_model::account::{LaneLine, LaneWord, LeftRight};
 use recrash_model::geometry::{Pose, Vec2};
 use recrash_model::scenario::{GraphMap, MapSpec, StripKind};
 use recrash_roads::{LanePath, RoadNetwork};
@@ -13,9 +15,6 @@ use std::sync::Arc;
 /// Whose turn is over has turned by so much; places to try are so far behind that. [rad, m]
 const TURNED_RAD: f64 = 1.3;
 const AFTER_TURN_M: [f64; 4] = [0.0, 3.0, 6.0, 10.0];
-
-/// The middle of who stands partly in a lane, and beside it, is so far inside of the edge of that. [m]
-const PARTLY_IN_M: f64 = 0.3;
 
 /// A road and the ego's way on it. Hundreds of ways of touching are tried on one: they share what is large.
 #[derive(Debug, Clone, PartialEq)]
@@ -111,9 +110,22 @@ impl Ground {
         Self { stands_m, ..self.clone() }
     }
 
-    /// The same, with an ego that stands at the kerb, or partly in its lane.
-    pub(super) fn at_kerb(self, partly: bool) -> Self {
-        let stands_m = if partly { self.lane_edges_m[1] - PARTLY_IN_M } else { self.kerbs_m[1] };
+    /// The same, with an ego that stands at the kerb.
+    pub(super) fn at_kerb(self) -> Self {
+        Self { stands_m: self.kerbs_m[1], ..self }
+    }
+
+    /// The same, with an ego that stands over a line of the road, where it is told to.
+    pub(super) fn over_line(self, told: &Told) -> Self {
+        let beside_m = 0.5 * LANE_M - INSIDE_M;
+        let [left, right] = [self.lane > 0, usize::from(self.lane) + 1 < self.lanes];
+        let stands_m = match told.stands_over().map(|over| (over.line, over.side)) {
+            Some((LaneLine::Edge, _)) => self.lane_edges_m[1] - INSIDE_M,
+            Some((LaneLine::Centre, _)) if !left => -beside_m,
+            Some((LaneLine::Lanes, Some(LeftRight::Left) | None)) if left => -beside_m,
+            Some((LaneLine::Lanes, Some(LeftRight::Right) | None)) if right => beside_m,
+            _ => return self,
+        };
         Self { stands_m, ..self }
     }
 

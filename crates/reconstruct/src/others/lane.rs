@@ -3,12 +3,13 @@
 use crate::others::scene::{BESIDE_M, BRAKES_MPS2, MET_BEFORE_S, ROOM_BESIDE_M, ROUND_AHEAD_M, Scene};
 use crate::others::stand::{stands, stood_behind};
 use crate::pace::plain::{first_time, next, when};
+use crate::told::astride::INSIDE_M;
 use crate::told::doing::Doing;
 use crate::told::others::{Extra, Role};
 use crate::told::queue::{leaves_lane, waits_ahead};
 use crate::told::side::{Turning, size_of};
 use crate::usual::{LANE_M, LEAD_GAP_M, ROOM_M};
-use recrash_model::account::{ContactState, ControlDevice, LaneWord, LeftRight, Origin};
+use recrash_model::account::{ContactState, ControlDevice, LaneLine, LaneWord, LeftRight, Origin};
 use recrash_model::geometry::{Pose, Vec2};
 use recrash_model::scenario::{ActorPlan, Deed, Leg, Place, Trigger};
 
@@ -63,7 +64,7 @@ impl Scene<'_> {
             None if at_kerb => self.ground.pose(s_m + ahead_m, 0.0),
             None => self.ahead(step, ahead_m),
         };
-        let pose = if extra.parks { self.half_parked(pose) } else { pose };
+        let pose = if extra.parks { self.half_parked(pose) } else { self.over_line(extra, pose) };
         // Before the light.
         let controlled = self.told.sv.control.is_some_and(|said| said.device == ControlDevice::Signal);
         let line_m = self.ground.first_m();
@@ -91,6 +92,15 @@ impl Scene<'_> {
         let acts = vec![when(up_s, Deed::Speed { to_mps: speed_mps, rate_mps2: GOES_MPS2 }), next(stop)];
         let begins_m = if again.is_some() { 0.0 } else { -up_m };
         Some(ActorPlan { course, acts, ..ActorPlan::standing(at(begins_m)) })
+    }
+
+    /// Over the line of the road over which it is told to stand.
+    fn over_line(&self, extra: &Extra, pose: Pose) -> Pose {
+        let (s_m, _) = self.ground.beside(pose.position);
+        match extra.astride.map(|over| over.line) {
+            Some(LaneLine::Edge) => self.ground.pose(s_m, self.ground.lane_edges_m[1] - INSIDE_M),
+            _ => pose,
+        }
     }
 
     /// Half out of the lane, with its rear to the kerb on the right.

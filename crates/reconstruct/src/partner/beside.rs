@@ -7,7 +7,7 @@ use crate::told::side::{Turning, size_of};
 use crate::touch::lanes;
 use crate::touch::staging::Staging;
 use crate::usual::{LANE_M, WHEELED_M};
-use recrash_model::account::{ContactState, LaneWord, LeftRight, Origin};
+use recrash_model::account::{ContactState, LaneLine, LaneWord, LeftRight, Origin};
 use recrash_model::geometry::Vec2;
 use recrash_model::math;
 use recrash_model::scenario::StripKind;
@@ -88,6 +88,23 @@ pub(super) fn line_y_m(told: &Told, staging: &Staging) -> Option<f64> {
         .or_else(|| {
             beside(told).map(|side| staging.sv.position.y + if side == LeftRight::Left { LANE_M } else { -LANE_M })
         })
+}
+
+/// Who drives over a line between lanes has its middle no farther beside that. [m]
+const OVER_WITHIN_M: f64 = 0.5;
+
+/// The line along which a partner came that drives over one: over that between the directions, else over the nearest. [m]
+pub(super) fn over_y_m(told: &Told, staging: &Staging) -> Option<f64> {
+    if !told.cp_drives_over() || told.splits_lanes().is_some() {
+        return None;
+    }
+    let (ground, y_m) = (&staging.ground, staging.cp.position.y);
+    let own_edge_m = ground.sv_pose(0.0).position.y + 0.5 * LANE_M;
+    let edge_m = match told.cp.is_over(LaneLine::Centre) {
+        true => own_edge_m + f64::from(ground.lane) * LANE_M,
+        false => own_edge_m + ((y_m - own_edge_m) / LANE_M).round() * LANE_M,
+    };
+    Some(y_m.clamp(edge_m - OVER_WITHIN_M, edge_m + OVER_WITHIN_M))
 }
 
 /// How far somebody drives who leaves its line for where it touches, in no tighter bend than who sets off steers; nothing of who walks. [m]

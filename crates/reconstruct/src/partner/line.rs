@@ -75,14 +75,18 @@ pub(super) fn line_to(told: &Told, staging: &Staging, pace: Pace, at: impl Fn(Po
         let begin = start(told, staging, back_m, aside, motion);
         length(begin).is_some_and(|found| (found - pace.driven_m).abs() < 0.02).then_some(begin)
     };
-    let on_lanes = with_its_turn(told, staging, &pace, arm_m)
-        .or_else(|| lateral::drew_in(told, staging, &pace, arm_m))
-        .or_else(|| lateral::keeps_lane(told, staging, &pace, arm_m))
-        .or_else(|| lateral::comes_by(told, staging, &pace, arm_m))
-        .or_else(|| lateral::changed_behind(told, staging, &pace, arm_m))
-        .or_else(|| turns::turns_in(told, staging, &pace, arm_m))
-        .or_else(|| lanes::from_lane(told, staging, &pace, arm_m));
-    if let Some((begin, mut course)) = on_lanes {
+    // Who drives over a line comes from there.
+    let over = told.cp_drives_over() && told.splits_lanes().is_none();
+    let on_lanes = || {
+        with_its_turn(told, staging, &pace, arm_m)
+            .or_else(|| lateral::drew_in(told, staging, &pace, arm_m))
+            .or_else(|| lateral::keeps_lane(told, staging, &pace, arm_m))
+            .or_else(|| lateral::comes_by(told, staging, &pace, arm_m))
+            .or_else(|| lateral::changed_behind(told, staging, &pace, arm_m))
+            .or_else(|| turns::turns_in(told, staging, &pace, arm_m))
+            .or_else(|| lanes::from_lane(told, staging, &pace, arm_m))
+    };
+    if let Some((begin, mut course)) = if over { None } else { on_lanes() } {
         course.push(beyond);
         let course = course.into_iter().map(|pose| Leg::Curve { to: at(pose), reverse }).collect();
         let plan = ActorPlan { speed_mps: pace.speed_mps, course, acts: pace.acts, ..ActorPlan::standing(at(begin)) };
@@ -113,8 +117,9 @@ fn start(told: &Told, staging: &Staging, back_m: f64, aside: bool, motion: impl 
     let turn = math::wrap_angle(staging.cp.heading - came);
     let mut position = staging.cp.position - way * back_m;
     let turns = told.cp.turning != Turning::No && turn.abs() > 0.1;
-    let line_y_m = beside::line_y_m(told, staging).filter(|_| aside && !turns);
-    let pulls_out = aside && !turns && told.passes_from_behind();
+    let over_y_m = beside::over_y_m(told, staging);
+    let line_y_m = over_y_m.or_else(|| beside::line_y_m(told, staging)).filter(|_| aside && !turns);
+    let pulls_out = aside && !turns && told.passes_from_behind() && over_y_m.is_none();
     if pulls_out {
         // Out of the ego's lane, which that may have left.
         let left = told.sv_aside().is_some();

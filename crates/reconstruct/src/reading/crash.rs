@@ -12,9 +12,17 @@ use crate::told::lies::Lies;
 use crate::told::side::Turning;
 use crate::told::times::CONTACT_S;
 use recrash_model::account::{
-    Account, Act, ContactState, CrashType, FirstContact, KindGroup, LeftRight, Origin, PlaceKind, Source, Striker,
-    Untold, told,
+    Account, Act, Astride, ContactState, CrashType, FirstContact, KindGroup, LaneLine, LeftRight, Origin, PlaceKind,
+    Source, Striker, Untold, told,
 };
+
+/// Who comes towards the ego partly in its lane is over the line between the directions.
+fn over_from(over: Astride, origin: Origin) -> Astride {
+    match (over.line, origin) {
+        (LaneLine::Lanes, Origin::Opposite) => Astride { line: LaneLine::Centre, side: None, ..over },
+        _ => over,
+    }
+}
 
 impl Told {
     /// # Errors
@@ -67,6 +75,7 @@ impl Told {
         let assumed_from =
             origin::out_of_stall(account, crash_type, &sv, &cp).or_else(|| assumed_origin(crash_type, &sv, &cp));
         let origin = origin.or(assumed_from).unwrap_or(Origin::Behind);
+        cp.astride = cp.astride.map(|over| over_from(over, origin));
         let layout = Layout::of(account, partner);
         let comes_round = origin_told && origin::comes_round(origin, partner, cp.state, cp.movement);
         let right = Some(LeftRight::Right);
@@ -154,6 +163,7 @@ impl Told {
             green_late: turns_green_late(&account.sv),
             reasons: others::reasons(account, origin),
             others: account.others.len(),
+            others_astride: others::astride(account),
             door: told(&account.door),
             posted_mps: told(&account.place.posted_mps),
             wanted: Vec::new(),
@@ -174,6 +184,7 @@ impl Told {
             assumed,
         };
         this.queued = this.was_in_queue(account, partner);
+        this.back_straight = this.cp_drives_over();
         this.courses(&account.sv, partner);
         this.phases();
         this.gives_way_to_merge = this.stops_for_merge(&account.sv, partner);

@@ -100,24 +100,12 @@ fn standing(account: &Account, party: &Party) -> Standing {
     let double = sources(party).any(|source| text(source).contains("double"));
     let stands = |fact: &&ActFact| matches!(fact.act, Act::Hold | Act::Park) && !fact.after_contact && !fact.begun;
     let in_lane = double || party.acts.iter().rfind(stands).is_some_and(is_in_lane);
-    let stood = |fact: &ActFact| stands(&fact) || fact.act == Act::Stop && !fact.after_contact && !fact.begun;
-    let partly = party.acts.iter().any(|fact| stood(fact) && is_partly_in_lane(fact));
-    Standing { counted: lane, at_kerb: stands_at_kerb(account, party), in_lane, partly }
+    Standing { counted: lane, at_kerb: stands_at_kerb(account, party), in_lane }
 }
 
-/// "was parked partially in the lane".
-fn is_partly_in_lane(fact: &ActFact) -> bool {
-    let text = text(&fact.source);
-    text.ends_with("lane") && PARTLY.iter().any(|word| text.contains(word))
-}
-
-/// Words for one that stands in a lane by a part of it.
-pub(super) const PARTLY: [&str; 4] = ["partial", "partly", "partway", "halfway"];
-
-/// "parked in the travel lane", and not partly there: the reader's words of who stands in a lane end with it.
+/// "parked in the travel lane": the reader's words of who stands in a lane end with it.
 fn is_in_lane(fact: &ActFact) -> bool {
-    let text = text(&fact.source);
-    text.ends_with("lane") && !PARTLY.iter().any(|word| text.contains(word))
+    text(&fact.source).ends_with("lane")
 }
 
 /// So many bytes behind the words that somebody stands, at most, begin those for the kerb: "was stopped to the right of the AV in a curbside

@@ -8,7 +8,7 @@ use crate::told::others::{Extra, GIVEN_WAY, Role, Thrower};
 use crate::told::queue::{leaves_lane, sets_off, waits_ahead};
 use crate::told::zones::side_of;
 use recrash_model::account::{
-    self, Account, Act, ActFact, ContactState, Fact, Kind, KindGroup, LeftRight, Origin, Other, StandReason,
+    self, Account, Act, ActFact, Astride, ContactState, Fact, Kind, KindGroup, LeftRight, Origin, Other, StandReason,
 };
 
 /// Things in the way, by their words.
@@ -156,6 +156,7 @@ pub(super) fn wanted(told: &Told, account: &Account) -> Vec<Extra> {
                     opposite: other.place.as_ref().is_some_and(|fact| fact.value == Origin::Opposite),
                     several: other.several,
                     side,
+                    astride: other.astride.as_ref().map(|fact| fact.value),
                     ..Extra::of_reason(role)
                 });
             }
@@ -244,6 +245,12 @@ fn thing_in_way(account: &Account) -> Option<Kind> {
 fn stays_close(other: &Other) -> bool {
     let crosses = before_contact(other).any(|fact| fact.act == Act::Cross);
     !crosses && before_contact(other).last().is_some_and(|fact| matches!(fact.act, Act::Hold | Act::Stop))
+}
+
+/// Who of the others is told over a line of the road.
+pub(super) fn astride(account: &Account) -> Vec<(usize, Astride)> {
+    let all = account.others.iter().enumerate();
+    all.filter_map(|(number, other)| Some((number, other.astride.as_ref()?.value))).collect()
 }
 
 /// How who touched the partner first did so, where that is told.

@@ -161,6 +161,7 @@ pub(super) fn side(party: &Party, kind: Option<Kind>, assumed: &mut Vec<String>,
         came_so: came_mps.is_some(),
         speed_mps: 0.0,
         lane: told(&party.lane),
+        astride: told(&party.astride),
         lane_to_come: party.lane.as_ref().is_some_and(|fact| goes_there(&fact.source)),
         control: control(party),
     }

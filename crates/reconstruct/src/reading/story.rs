@@ -1,6 +1,5 @@
 //! What the words tell of somebody else: whether the ego acted for it, where it is, and what it is to the ego.
 
-use crate::reading::layout::PARTLY;
 use crate::reading::turns::leaves_line;
 use crate::reading::words::{before_contact, span, text};
 use crate::told::crash::Told;
@@ -59,11 +58,11 @@ const IN_LANE: [&str; 6] = ["in-lane", "in lane", "in the lane", "in its lane", 
 
 /// Whether somebody is told to stand in a lane, and not partly there: at no kerb.
 pub(super) fn stands_in_lane(other: &Other) -> bool {
-    before_contact(other).any(|fact| {
+    let in_lane = |fact: &ActFact| {
         let words = text(&fact.source);
-        let says = |of: &[&str]| of.iter().any(|word| words.contains(word));
-        says(&IN_LANE) && !says(&PARTLY)
-    })
+        IN_LANE.iter().any(|word| words.contains(word))
+    };
+    other.astride.is_none() && before_contact(other).any(in_lane)
 }
 
 /// Whether the ego stands on though its light has turned green, and lets in who comes from beside the road: the queue ahead, of which no

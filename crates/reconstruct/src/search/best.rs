@@ -104,7 +104,8 @@ impl Search {
         let off = strays::off_its_way(told, &scenario, &rollout);
         // From beside the road it may show them by another way than along the ego's.
         let along = told.comes_along_lanes();
-        let unseen = verdict.checks.iter().filter(|check| along && is_deed_left_open(check)).count();
+        let unseen = |check: &&Check| along && is_deed_left_open(check) || is_place_left_open(check);
+        let unseen = verdict.checks.iter().filter(unseen).count();
         let shows = (verdict.failures().count(), others, strays, unseen);
         let cost = (shows.0, shows.1, shows.2, shows.3, off + ZONE_STEP * staging.cost.0 as usize);
         let missing = verdict.checks.iter().filter(|check| is_of_others(check)).count();
@@ -126,6 +127,11 @@ impl Search {
         let enough = self.runs >= most && self.best.as_ref().is_some_and(Best::shows_all);
         shows == (0, false, false, 0) && off == 0 || enough
     }
+}
+
+/// Whether one of the two is told over a line of the road, and is not.
+fn is_place_left_open(check: &Check) -> bool {
+    matches!(check.kind, CheckKind::SvAstride | CheckKind::CpAstride) && check.result == CheckResult::CannotBeShown
 }
 
 /// Whether a fact of others in the story is told, and not shown.

@@ -5,7 +5,7 @@ use crate::told::phase::Phase;
 use crate::told::side::Turning;
 use crate::told::zones::side_of;
 use crate::usual::LANE_M;
-use recrash_model::account::{Act, ContactState, LeftRight, Origin, Striker};
+use recrash_model::account::{Act, ContactState, LaneLine, LeftRight, Origin, Striker};
 use recrash_model::template::Movement;
 
 /// Who leaves its lane leaves it by so much, who comes from the kerb or goes there by so much, and who changes lanes has done so much
@@ -18,8 +18,9 @@ const CHANGES_M: f64 = 2.2;
 /// An ego that leaves the kerb, and touches one that is parked there, leaves it by so much. [m]
 const LEAVES_KERB_M: f64 = 1.2;
 
-/// Who leaves its line in two goes has done so much of that at the end of the first. [-]
+/// Who leaves its line in two goes has done so much of that at the end of the first; who stands over the line between two lanes there. [-]
 const FIRST_PART: f64 = 0.3;
+const FIRST_PART_OVER: f64 = 0.4;
 
 /// Who pulls out has left the kerb by so much. [m]
 const PULLS_OUT_M: f64 = 1.5;
@@ -96,7 +97,8 @@ impl Told {
     /// How far to the right the ego goes before its last stand that leaves its line in two goes, with a stand between. [m]
     pub(crate) fn first_part_m(&self, aside: Aside) -> Option<f64> {
         let twice = self.sv.goes_aside_twice() && !self.sv.state.stands() && !aside.done && !aside.back;
-        twice.then_some(FIRST_PART * (aside.to_t_m - aside.from_t_m))
+        let part = if self.sv.is_over(LaneLine::Lanes) { FIRST_PART_OVER } else { FIRST_PART };
+        twice.then_some(part * (aside.to_t_m - aside.from_t_m))
     }
 
     /// How far to the left of where it touches the partner came along, of who goes about the ego's way or against it. [m]

@@ -8,7 +8,7 @@ use crate::told::phase::Phase;
 use crate::told::rig::Rig;
 use crate::told::side::{Side, Turning};
 use recrash_model::account::{
-    ContactState, Control, ControlDevice, CrashType, EarlierTouch, Kind, LeftRight, Obeyed, Origin, PlaceKind,
+    Astride, ContactState, Control, ControlDevice, CrashType, EarlierTouch, Kind, LeftRight, Obeyed, Origin, PlaceKind,
     SignalState, StandReason, Striker,
 };
 use recrash_model::metrics::CheckKind;
@@ -98,6 +98,8 @@ pub(crate) struct Told {
     pub(crate) reasons: Vec<StandReason>,
     /// Others than the two.
     pub(crate) others: usize,
+    /// Which of them are told over a line of the road.
+    pub(crate) others_astride: Vec<(usize, Astride)>,
     /// Whose door took part.
     pub(crate) door: Option<Striker>,
     /// Posted speed, where told. [m/s]
@@ -155,6 +157,9 @@ impl Told {
             (CheckKind::PassedOn, self.pushed),
             (CheckKind::SvLane, sv.lane.is_some() && !sv.lane_to_come),
             (CheckKind::CpLane, cp.lane.is_some() && !cp.lane_to_come && moves),
+            (CheckKind::SvAstride, sv.astride.is_some()),
+            (CheckKind::CpAstride, cp.astride.is_some() && self.thing.is_none()),
+            (CheckKind::OthersAstride, !self.others_astride.is_empty()),
             (CheckKind::SvControl, sv.control.is_some()),
             (CheckKind::CpControl, cp.control.is_some() && moves),
             (CheckKind::Reason, sv.state.stands() && !self.reasons.is_empty()),

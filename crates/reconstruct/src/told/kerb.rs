@@ -4,7 +4,9 @@ use crate::told::crash::Told;
 use crate::told::phase::Phase;
 use crate::told::side::Turning;
 use crate::told::zones::side_of;
-use recrash_model::account::{Act, ContactState, LaneWord, LeftRight, Origin, PlaceKind, StandReason, Striker};
+use recrash_model::account::{
+    Act, ContactState, LaneLine, LaneWord, LeftRight, Origin, PlaceKind, StandReason, Striker,
+};
 use recrash_model::template::Movement;
 
 impl Told {
@@ -15,12 +17,6 @@ impl Told {
         let street = matches!(self.place, PlaceKind::Street | PlaceKind::Intersection | PlaceKind::Other);
         let there = (parked || self.stops_at_kerb()) && !self.is_in_lane(true);
         street && (there || self.is_partly_in_lane()) && !stands
-    }
-
-    /// Whether the ego stands partly in the lane beside which it would be parked.
-    pub(crate) fn is_partly_in_lane(&self) -> bool {
-        let steps = self.sv.phases.first().is_none_or(|phase| *phase == Phase::Stands);
-        self.layout.sv.partly && self.sv.state.stands() && steps && self.sv.turning == Turning::No
     }
 
     /// Whether one of the two is told to stand in a driving lane: by a word for the lane, double-parked, or passed by who takes the opposite
@@ -39,8 +35,11 @@ impl Told {
         let (side, told) = if of_ego { (&self.sv, self.layout.sv) } else { (&self.cp, self.layout.cp) };
         let street = matches!(self.place, PlaceKind::Street | PlaceKind::Intersection | PlaceKind::Other);
         let parked = side.state == ContactState::Parked || side.came_to_park || side.state.stands() && told.at_kerb;
-        let partly = of_ego && self.is_partly_in_lane();
-        street && parked && !partly && !self.is_in_lane(of_ego) && (of_ego || self.thing.is_none())
+        street
+            && parked
+            && !side.is_over(LaneLine::Edge)
+            && !self.is_in_lane(of_ego)
+            && (of_ego || self.thing.is_none())
     }
 
     /// Whether a parked partner's door touches that is on the ego's side only where the partner faces the other way.

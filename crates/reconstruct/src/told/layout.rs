@@ -36,8 +36,6 @@ pub(crate) struct Standing {
     pub(crate) at_kerb: bool,
     /// It is parked in a lane: "double parked", "parked in-lane".
     pub(crate) in_lane: bool,
-    /// It stands partly in the lane, and beside it: "was stopped partially in-lane".
-    pub(crate) partly: bool,
 }
 
 /// What is told so.

@@ -2,6 +2,7 @@
 //! need nothing else. It knows no account, no road and no rollout.
 
 pub(crate) mod aside;
+pub(crate) mod astride;
 pub(crate) mod choices;
 pub(crate) mod crash;
 pub(crate) mod doing;

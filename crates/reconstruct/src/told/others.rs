@@ -1,7 +1,7 @@
 //! What others than the two are to the ego, and who threw the partner at it.
 
 use crate::told::near::{Does, Near};
-use recrash_model::account::{Kind, LeftRight, Origin};
+use recrash_model::account::{Astride, Kind, LeftRight, Origin};
 
 /// What somebody else is to the ego.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -130,6 +130,8 @@ pub(crate) struct Extra {
     pub(crate) several: bool,
     /// On which side of the ego it is, or from which it comes, where told.
     pub(crate) side: Option<LeftRight>,
+    /// Over which line of the road its body reaches, where told.
+    pub(crate) astride: Option<Astride>,
     /// What is told of one who has no part in what the ego does.
     pub(crate) near: Option<Near>,
 }
@@ -155,6 +157,7 @@ impl Extra {
             opposite: false,
             several: false,
             side: None,
+            astride: None,
             near: None,
         }
     }

@@ -39,8 +39,9 @@ impl Told {
     /// On which side of an ego that keeps its lane the partner comes by between that and the next one.
     pub(crate) fn splits_lanes(&self) -> Option<LeftRight> {
         let keeps = self.sv.turning == Turning::No && self.cp.turning == Turning::No && self.sv_aside().is_none();
-        let moves = self.cp.state == ContactState::Moving && !self.cp.stood_first && !self.is_at_kerb();
-        let splits = self.layout.splits && self.origin == Origin::Behind && keeps && moves;
+        let over = self.cp_drives_over();
+        let moves = self.cp.state == ContactState::Moving && (!self.cp.stood_first || over) && !self.is_at_kerb();
+        let splits = (self.layout.splits || over) && self.origin == Origin::Behind && keeps && moves;
         self.cp.passes_on().or_else(|| touched_side(&self.sv.zones)).filter(|_| splits)
     }
 

@@ -2,7 +2,7 @@
 
 use crate::told::doing::Doing;
 use crate::told::phase::Phase;
-use recrash_model::account::{Act, ContactState, Control, LaneWord, LeftRight, Manner};
+use recrash_model::account::{Act, Astride, ContactState, Control, LaneWord, LeftRight, Manner};
 use recrash_model::kinds::PartnerKind;
 use recrash_model::scenario::Size;
 use recrash_model::template::Movement;
@@ -111,6 +111,8 @@ pub(crate) struct Side {
     /// Speed at the contact that is staged. [m/s]
     pub(crate) speed_mps: f64,
     pub(crate) lane: Option<LaneWord>,
+    /// Over which line of the road its body reaches, where told.
+    pub(crate) astride: Option<Astride>,
     /// It is told to go there, and not to come along it.
     pub(crate) lane_to_come: bool,
     /// The signal or sign in front of it, where told.

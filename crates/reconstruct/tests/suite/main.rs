@@ -3,6 +3,7 @@
 mod across;
 mod acts;
 mod as_told;
+mod astride;
 mod between;
 #[path = "../../../reader/tests/suite/common.rs"]
 #[allow(dead_code, reason = "the reader's own tests use the rest")]

@@ -1,0 +1,245 @@
+//! Who is partly in one lane and partly in another, or beside the lanes: over which line of the road its body reaches, and when.
+
+use super::Reading;
+use crate::chunk::bound;
+use crate::frame::Frame;
+use crate::world::{Actor, SUBJECT};
+use recrash_model::account::{Act, Astride, AstrideWhen, Compass, Fact, Kind, LaneLine, LeftRight};
+
+/// A place that somebody is partly in, as it is named.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Region {
+    /// A lane, or the road: which side of its own lane that is on, and whether it is told to be another one than that.
+    Lane { side: Option<LeftRight>, other: bool },
+    /// Beside the lanes: room to park, a bicycle lane, a shoulder.
+    Beside,
+    /// The other side of the road, or the middle of it.
+    Over,
+    /// A road or a lane that leads this way.
+    Way(Compass),
+}
+
+/// A place that somebody is partly in, and the token behind its name.
+type Named = (Region, usize);
+
+/// A place is named in so many words, with its article. [tokens]
+const NAME_WITHIN: usize = 10;
+
+/// Over which line somebody's body is told to reach, up to the contact.
+pub(super) fn astride(reading: &Reading<'_>, actor: Actor) -> Option<Fact<Astride>> {
+    if !reading.story.world.actors[actor].kind.is_none_or(Kind::is_vehicle) {
+        return None;
+    }
+    let until = reading.until().min(reading.story.tokens.len());
+    (0..until).find_map(|at| {
+        let (first, second) = partly(reading, at)?;
+        let end = second.unwrap_or(first).1;
+        let frame = told_of(reading, at).filter(|frame| frame.who == Some(actor))?;
+        let act = act_of(reading, (at, end), actor)?;
+        let line = line(reading, (at, frame), act, (first.0, second.map(|named| named.0)))?;
+        Some(reading.told(Astride { line, side: side(line, first.0, second), when: when(act) }, at, end))
+    })
+}
+
+fn word<'a>(reading: &'a Reading<'_>, at: usize) -> &'a str {
+    reading.story.tokens.get(at).map_or("", |token| token.text.as_str())
+}
+
+fn is_partly(word: &str) -> bool {
+    matches!(word, "partially" | "partly" | "partway" | "halfway" | "half")
+}
+
+fn leads_in(word: &str) -> bool {
+    matches!(word, "in" | "within" | "into" | "inside" | "on" | "across" | "over" | "onto")
+}
+
+/// "partially in the left lane and partially in the bike lane", "straddling two lanes", "on the double yellow line", "encroaching into the
+/// lane": the places that are named from this token on.
+fn partly(reading: &Reading<'_>, at: usize) -> Option<(Named, Option<Named>)> {
+    let word = |at: usize| word(reading, at);
+    if word(at).starts_with("straddl") {
+        let both = (at + 1..at + 4).any(|at| matches!(word(at), "two" | "both" | "lanes"));
+        let lane = Region::Lane { side: None, other: both };
+        let named = region(reading, at + 1).unwrap_or((lane, at + 1));
+        let plain = matches!(named.0, Region::Lane { .. } | Region::Way(_));
+        return Some((if plain { (Region::Lane { side: None, other: true }, named.1) } else { named }, None));
+    }
+    let reaches = ["encroach", "protrud", "intrud", "jut"].iter().any(|stem| word(at).starts_with(stem));
+    let reaches = reaches && (word(at).ends_with("ing") || is_partly(word(at.wrapping_sub(1))));
+    if reaches && leads_in(word(at + 1)) {
+        return Some((region(reading, at + 2)?, None));
+    }
+    let line = word(at) == "on" && (at + 1..at + 4).any(|at| word(at) == "yellow");
+    if line && !is_partly(word(at.wrapping_sub(1))) {
+        return Some((region(reading, at + 1).filter(|(region, _)| *region == Region::Over)?, None));
+    }
+    // "partially stopping within both lanes".
+    let to = at + 1 + usize::from(word(at + 1).starts_with("stop"));
+    if !is_partly(word(at)) || !leads_in(word(to)) {
+        return None;
+    }
+    let first = region(reading, to + 1)?;
+    Some((first, and_partly(reading, first.1)))
+}
+
+/// "and partially in the parking lane", "and the bike lane", behind the first of two places.
+fn and_partly(reading: &Reading<'_>, at: usize) -> Option<Named> {
+    let word = |at: usize| word(reading, at);
+    let from = (at..at + AND_WITHIN).find(|&at| word(at) == "and")? + 1;
+    let from = from + usize::from(is_partly(word(from)));
+    let from = if leads_in(word(from)) { from + 1 } else { from };
+    let article = matches!(word(from), "the" | "a" | "its") || leads_in(word(from - 1));
+    region(reading, from).filter(|_| article)
+}
+
+/// The name of a road may stand between a lane and "and": "in the northbound lane of Elm Street and". [tokens]
+const AND_WITHIN: usize = 5;
+
+/// The place that is named from this token on, up to its noun.
+fn region(reading: &Reading<'_>, from: usize) -> Option<Named> {
+    let word = |at: usize| word(reading, at);
+    let ends =
+        |at: &usize| matches!(word(*at), "" | "." | "," | "and" | "when" | "while" | "as" | "with" | "for" | "to");
+    let mut end = from;
+    let noun = loop {
+        // "the second to the right lane", "the second from the right lane".
+        let counted = word(end) == "to" && word(end + 1) == "the" && word(end.wrapping_sub(1)) == "second";
+        if end == from + NAME_WITHIN || ends(&end) && !counted && !is_of_zone(reading, end) {
+            return compass_road(reading, from);
+        }
+        let noun = word(end);
+        let lane = matches!(noun, "lane" | "lanes" | "line" | "lines" | "divider" | "roadway" | "road" | "street");
+        if lane || is_beside(noun) && word(end + 1) != "lane" && !is_of_zone(reading, end + 1) {
+            break end;
+        }
+        end += 1;
+    };
+    let names = |any: &[&str]| (from..=noun).any(|at| any.contains(&word(at)));
+    let end = noun + 1 + usize::from(word(noun) == "lane" && matches!(word(noun + 1), "line" | "lines" | "divider"));
+    let beside = (from..=noun).any(|at| is_beside(word(at)));
+    let over = names(&["oncoming", "opposing", "opposite", "yellow", "centerline", "divider"])
+        || names(&["center"]) && names(&["two", "turn", "line", "lines"]);
+    let way = (from..noun).find_map(|at| bound(word(at)));
+    let side = match (names(&["left"]), names(&["right"])) {
+        (true, false) => Some(LeftRight::Left),
+        (false, true) => Some(LeftRight::Right),
+        _ => None,
+    };
+    let adjacent = names(&["adjacent", "next", "neighboring", "other"]);
+    let owned =
+        names(&["'s"]) || names(&["turn", "turning", "bus", "center", "middle", "second", "third", "same", "both"]);
+    Some(match way {
+        _ if beside => (Region::Beside, end),
+        _ if over => (Region::Over, end),
+        Some(way) => (Region::Way(way), end),
+        None => (Region::Lane { side: side.filter(|_| adjacent), other: adjacent || owned }, end),
+    })
+}
+
+/// "northbound Elm Street", of which the name is withheld: the road that leads that way.
+fn compass_road(reading: &Reading<'_>, from: usize) -> Option<Named> {
+    bound(word(reading, from)).map(|way| (Region::Way(way), from + 1))
+}
+
+/// What lies beside the lanes of a street, and along it.
+fn is_beside(word: &str) -> bool {
+    matches!(
+        word,
+        "parking"
+            | "bike"
+            | "bicycle"
+            | "curb"
+            | "shoulder"
+            | "stall"
+            | "zone"
+            | "space"
+            | "spot"
+            | "sidewalk"
+            | "gutter"
+    )
+}
+
+/// "the pick-up, drop-off zone": a comma within the name of a zone.
+fn is_of_zone(reading: &Reading<'_>, at: usize) -> bool {
+    (at + 1..at + 4).any(|at| word(reading, at) == "zone") && matches!(word(reading, at), "," | "and")
+}
+
+/// Of whom the words at a token are told: who does what is told last before them in the sentence, else first behind them.
+fn told_of<'a>(reading: &'a Reading<'_>, at: usize) -> Option<&'a Frame> {
+    let sentence = reading.story.sentences.iter().position(|sentence| (sentence.first..sentence.end).contains(&at))?;
+    let own = || reading.story.frames.iter().filter(move |frame| frame.sentence == sentence && frame.who.is_some());
+    own()
+        .filter(|frame| frame.first <= at)
+        .max_by_key(|frame| frame.first)
+        .or_else(|| own().min_by_key(|frame| frame.first))
+}
+
+/// What somebody did last before these words; nothing of what takes it across the road, or of whose front alone is told in a lane, which is one
+/// that it comes to.
+fn act_of(reading: &Reading<'_>, (at, end): (usize, usize), actor: Actor) -> Option<Act> {
+    let frame = told_of(reading, at)?;
+    let own = |other: &&Frame| other.who == Some(actor) && other.sentence == frame.sentence && other.first <= at + 1;
+    let acts = reading.story.frames.iter().filter(own).filter(|frame| frame.act().is_some() && !frame.negated);
+    let last = acts.max_by_key(|frame| frame.first).or(Some(frame).filter(|frame| frame.first > at))?;
+    let across =
+        |word: &str| word.starts_with("perpendicular") || matches!(word, "sideways" | "driveway" | "intersection");
+    let front = (last.first..at).any(|at| word(reading, at) == "front" && word(reading, at + 1) == "of");
+    let across = front || (last.first..end).any(|at| across(word(reading, at)));
+    last.act().filter(|act| ALONG.contains(act) && !across)
+}
+
+/// What somebody does along a road.
+const ALONG: [Act; 9] =
+    [Act::Hold, Act::Stop, Act::Park, Act::PullOver, Act::Follow, Act::Slow, Act::Drift, Act::Reverse, Act::Pass];
+
+/// The line between the places that are named; of one alone, between that and where it would be.
+fn line(
+    reading: &Reading<'_>,
+    (at, frame): (usize, &Frame),
+    act: Act,
+    (first, second): (Region, Option<Region>),
+) -> Option<LaneLine> {
+    // "and its rear was partially in the lane": so it stood.
+    let was = act == Act::Drift && matches!(word(reading, at.wrapping_sub(1)), "was" | "were");
+    let stands = was || matches!(act, Act::Hold | Act::Stop | Act::Park | Act::PullOver);
+    Some(match (first, second) {
+        (Region::Over, _) | (_, Some(Region::Over)) => LaneLine::Centre,
+        (Region::Beside, _) | (_, Some(Region::Beside)) => LaneLine::Edge,
+        (Region::Way(one), Some(Region::Way(other))) if one.eighths_to(other) == 4 => LaneLine::Centre,
+        (_, Some(_)) => LaneLine::Lanes,
+        (Region::Lane { other: true, .. }, None) if frame.who == Some(SUBJECT) || !at_kerb(reading, at) => {
+            LaneLine::Lanes
+        }
+        // "was parked partially in the lane", and partly at the kerb.
+        (Region::Lane { .. } | Region::Way(_), None) if stands && !changes(reading, frame) => LaneLine::Edge,
+        _ => return None,
+    })
+}
+
+/// Whether the kerb is named before these words in their sentence.
+fn at_kerb(reading: &Reading<'_>, at: usize) -> bool {
+    let sentence = reading.story.sentences.iter().find(|sentence| (sentence.first..sentence.end).contains(&at));
+    sentence.is_some_and(|sentence| (sentence.first..at).any(|at| word(reading, at) == "curb"))
+}
+
+/// Whether somebody was on its way to another lane.
+fn changes(reading: &Reading<'_>, frame: &Frame) -> bool {
+    frame.who.is_some_and(|who| reading.before(who).any(|(_, other)| other.act() == Some(Act::LaneChange)))
+}
+
+/// On which side of its own lane the line is: of who reaches into the lane beside it.
+fn side(line: LaneLine, first: Region, second: Option<Named>) -> Option<LeftRight> {
+    match (line, first) {
+        (LaneLine::Lanes, Region::Lane { side, .. }) if second.is_none() => side,
+        _ => None,
+    }
+}
+
+/// When its body is over the line: of who drives so, from the start.
+const fn when(act: Act) -> AstrideWhen {
+    match act {
+        Act::Stop | Act::PullOver | Act::Hold | Act::Park | Act::Drift => AstrideWhen::Stop,
+        Act::Follow | Act::Slow | Act::Pass => AstrideWhen::Start,
+        _ => AstrideWhen::Contact,
+    }
+}
