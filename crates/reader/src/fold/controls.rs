@@ -94,6 +94,7 @@ pub(super) fn controls(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<Control>
         had_a_light(reading, &mut all);
         was_at_a_sign(reading, &mut all);
         of_that_queue(reading, &mut all, turned_green.map(|(state, ..)| state));
+        of_those_ahead(reading, &mut all, turned_green.map(|(state, ..)| state));
         if turned_green.is_none() {
             told_alone(reading, &mut all);
         }
@@ -219,6 +220,34 @@ fn of_that_queue(reading: &Reading<'_>, all: &mut Vec<Fact<Control>>, turned: Op
             && all.iter().all(|known| known.value.device != device)
         {
             let state = turned.filter(|_| device == ControlDevice::Signal).or(state);
+            all.push(reading.told(Control { device, state, obeyed: Some(Obeyed::Yes) }, at, at + length));
+        }
+    }
+}
+
+/// "Cars ahead of it were stopped at a red light, so it stopped too": the light of those ahead is its own.
+fn of_those_ahead(reading: &Reading<'_>, all: &mut Vec<Fact<Control>>, turned: Option<SignalState>) {
+    let story = &reading.story;
+    let word = |at: usize| story.tokens.get(at).map_or("", |token| token.text.as_str());
+    let stands = |frame: &Frame| matches!(frame.act(), Some(Act::Hold | Act::Stop)) && frame.happened();
+    let ahead = |who: Actor| {
+        who != SUBJECT && story.world.actors[who].relations.iter().any(|(relation, _)| *relation == Relation::Ahead)
+    };
+    let signal = |control: &Fact<Control>| control.value.device == ControlDevice::Signal;
+    for (number, frame) in story.frames.iter().enumerate().filter(|(number, _)| !reading.is_after(*number)) {
+        let stops_behind =
+            |next: &Frame| next.who == Some(SUBJECT) && stands(next) && next.sentence <= frame.sentence + 1;
+        let followed = story.frames[number + 1..].iter().take(4).any(stops_behind);
+        if !(frame.who.is_some_and(ahead) && stands(frame) && followed) || all.iter().any(signal) {
+            continue;
+        }
+        let (first, end) = reading.window(number);
+        let light = (first..end).find_map(|at| {
+            let words: Vec<&str> = (at..(at + 4).min(end)).map(word).collect();
+            named(&words).map(|(device, state, length)| (at, device, state, length))
+        });
+        if let Some((at, device, state, length)) = light.filter(|(_, device, ..)| *device == ControlDevice::Signal) {
+            let state = turned.or(state);
             all.push(reading.told(Control { device, state, obeyed: Some(Obeyed::Yes) }, at, at + length));
         }
     }
@@ -365,7 +394,7 @@ fn named(words: &[&str]) -> Option<(ControlDevice, Option<SignalState>, usize)> 
         ["green", "light" | "signal" | "traffic" | "arrow" | "showing", ..]
         | ["green", "left" | "right", "turn", ..] => (ControlDevice::Signal, Some(SignalState::Green), 2),
         ["yellow", "light" | "signal", ..] => (ControlDevice::Signal, Some(SignalState::Yellow), 2),
-        ["traffic", "light" | "signal", ..] => (ControlDevice::Signal, None, 2),
+        ["traffic" | "stop", "light" | "signal", ..] => (ControlDevice::Signal, None, 2),
         ["at" | "for", "the" | "a" | "that", "light" | "signal" | "stoplight", rest @ ..]
             if !matches!(
                 rest.first(),

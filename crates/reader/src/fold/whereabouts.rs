@@ -5,6 +5,7 @@ use super::origin::{Clues, comes_against, first_relation, side_named_at, side_of
 use crate::chunk::bound;
 use crate::frame::{Frame, zone_of};
 use crate::lexicon::{Form, Relation, Sense};
+use crate::token::Token;
 use crate::world::{Actor, SUBJECT};
 use recrash_model::account::{Act, Compass, Fact, Kind, KindGroup, LaneWord, LeftRight, Origin, Source};
 
@@ -35,11 +36,14 @@ pub(crate) fn place_of(reading: &Reading<'_>, actor: Actor) -> Option<Fact<Origi
         .or_else(|| at_side_of_road(&clues))
         .or_else(|| told_afterwards(&clues))
         .or_else(|| stops_in_its_lane(&clues))
+        .or_else(|| queue_waited_for(&clues))
+        .or_else(|| in_slow_traffic(&clues))
         .or_else(|| approached(&clues))
         .or_else(|| by_another(&clues))
         .or_else(|| in_queue_of_partner(&clues))
         .or_else(|| in_next_lane(&clues))
         .or_else(|| goes_its_way(&clues))
+        .or_else(|| stops_before_it(&clues))
 }
 
 /// The place that a relation to the subject vehicle tells.
@@ -95,6 +99,63 @@ fn stops_in_its_lane(clues: &Clues<'_>) -> Option<Fact<Origin>> {
     };
     let met = own == lane && stays && stops && reading.before(SUBJECT).any(reacts);
     met.then(|| reading.told(Origin::Ahead, first, end))
+}
+
+/// "It was yielding to a queue of cars", "slowed for a line of traffic": that is ahead of it, and not across its way.
+fn queue_waited_for(clues: &Clues<'_>) -> Option<Fact<Origin>> {
+    let (reading, actor) = (clues.reading, clues.actor);
+    let (from, end) = queue_of(reading, actor)?;
+    let across = |token: &Token| {
+        matches!(
+            token.text.as_str(),
+            "across" | "crossing" | "oncoming" | "opposing" | "opposite" | "adjacent" | "next"
+        )
+    };
+    let tokens = &reading.story.tokens;
+    let elsewhere = tokens[from..(end + ACROSS_WITHIN).min(tokens.len())].iter().any(across);
+    let waits = |(_, frame): (usize, &Frame)| {
+        let slows = frame.sense == Sense::Yield || matches!(frame.act(), Some(Act::Slow | Act::Stop | Act::Hold));
+        frame.object == Some(actor) && slows && frame.happened()
+    };
+    let stays = !reading.did(SUBJECT, Act::Turn);
+    (stays && !elsewhere && reading.before(SUBJECT).any(waits)).then(|| reading.told(Origin::Ahead, from, end))
+}
+
+/// Words that place a queue across the road, or beside it, stand so near behind it. [tokens]
+const ACROSS_WITHIN: usize = 6;
+
+/// "Traffic came to a sudden stop, and it stopped": the traffic that it is in.
+fn stops_before_it(clues: &Clues<'_>) -> Option<Fact<Origin>> {
+    let (reading, actor) = (clues.reading, clues.actor);
+    let known = &reading.story.world.actors[actor];
+    let (first, end) = known.kind_tokens?;
+    let traffic = reading.story.tokens[first..end].len() == 1 && reading.story.tokens[first].text == "traffic";
+    let stops = |frame: &Frame| matches!(frame.act(), Some(Act::Stop | Act::Slow)) && frame.happened();
+    let before = |(number, frame): (usize, &Frame)| {
+        let next = reading.story.frames.get(number + 1);
+        stops(frame)
+            && next.is_some_and(|next| next.who == Some(SUBJECT) && stops(next) && next.sentence == frame.sentence)
+    };
+    let alone = known.heading.is_none() && known.lane.is_none() && known.relations.is_empty();
+    (traffic && alone && reading.before(actor).any(before)).then(|| reading.told(Origin::Ahead, first, end))
+}
+
+/// "It was driving in stop-and-go traffic": who drives in it has it ahead.
+fn in_slow_traffic(clues: &Clues<'_>) -> Option<Fact<Origin>> {
+    let reading = clues.reading;
+    let known = &reading.story.world.actors[clues.actor];
+    let (first, end) = known.kind_tokens.filter(|_| known.several)?;
+    let tokens = &reading.story.tokens;
+    let from = (first.saturating_sub(5)..first + 1).find(|at| tokens[*at].text == "in")?;
+    let words: Vec<&str> = tokens[from..end].iter().map(|token| token.text.as_str()).collect();
+    let slow = words.iter().any(|word| matches!(*word, "go" | "congested" | "bumper" | "crawling"))
+        || words.windows(2).any(|pair| matches!(pair, ["slow" | "slowly", "moving"]));
+    let drives = |(number, frame): (usize, &Frame)| {
+        let (begins, ends) = reading.window(number);
+        frame.act() == Some(Act::Follow) && (begins..ends).contains(&from)
+    };
+    let traffic = words.last() == Some(&"traffic");
+    (traffic && slow && reading.before(SUBJECT).any(drives)).then(|| reading.told(Origin::Ahead, from, end))
 }
 
 /// "It approached a truck traveling slowly": which drives ahead, and which it does not go past.
@@ -288,7 +349,9 @@ fn queue_of(reading: &Reading<'_>, actor: Actor) -> Option<(usize, usize)> {
         && (matches!(word(first - 1), "in" | "behind") || word(first) == "a" && word(from + 1) == "in");
     let stands = (first..end).any(|at| matches!(word(at), "queued" | "backed" | "stopped" | "standing" | "stationary"));
     let jam = matches!(word(end), "queue" | "jam" | "backup");
-    (queue || traffic && (stands || jam)).then_some((from, end))
+    // "stopped in traffic".
+    let plain = end == first + 1 && word(first - 1) == "in";
+    (queue || traffic && (stands || jam || plain)).then_some((from, end))
 }
 
 /// "Traffic was queued for the light, and it was standing in that queue": what it stands in is ahead of it.

@@ -58,7 +58,9 @@ pub(super) fn apply(frames: &mut Vec<Frame>, tokens: &[Token], sentences: &[Sent
             frames[number].sense = Sense::Act(Act::LaneChange);
         } else if headed_as_it_stands(frames, number, &words) {
             frames[number].sense = Sense::Face;
-        } else if leaves_a_control(frames, number, tokens, sentences) {
+        } else if leaves_a_control(frames, number, tokens, sentences)
+            || leaves_a_queue(frames, number, tokens, sentences)
+        {
             frames[number].sense = Sense::Act(Act::SetOff);
         } else if against_traffic(frame, &words) {
             frames[number].sense = Sense::Act(Act::WrongWay);
@@ -292,6 +294,23 @@ fn leaves_a_control(frames: &[Frame], number: usize, tokens: &[Token], sentences
         && tokens[frames[before].first..end]
             .iter()
             .any(|token| matches!(token.text.as_str(), "sign" | "light" | "signal"))
+}
+
+/// "It stood behind a bus, and the bus pulled away": on along the lane, and from no kerb.
+fn leaves_a_queue(frames: &[Frame], number: usize, tokens: &[Token], sentences: &[Sentence]) -> bool {
+    let frame = &frames[number];
+    let words = &tokens[frame.first..behind(frames, number, sentences)];
+    let says = |of: &[&str]| words.iter().any(|token| of.contains(&token.text.as_str()));
+    let away = says(&["away"]) && !says(&["from", "curb", "kerb", "parking", "stall", "driveway", "lot", "side"]);
+    let before = &frames[..number];
+    let waits = |other: &Frame| {
+        let stands = matches!(other.act(), Some(Act::Stop | Act::Hold)) && other.happened();
+        let behind = |(relation, to): &(Relation, Option<usize>)| *relation == Relation::Behind && *to == frame.who;
+        other.who == Some(SUBJECT) && stands && other.relations.iter().any(behind)
+    };
+    let parked = before.iter().any(|other| other.who == frame.who && other.sense == Sense::Parked);
+    let leaves = frame.act() == Some(Act::PullOut) && frame.out_of.is_none() && frame.who.is_some();
+    leaves && away && !parked && before.iter().any(waits)
 }
 
 /// "came into the street on the wrong side, against the traffic". "Went against the traffic laws" is no way.

@@ -89,6 +89,8 @@ impl Parser<'_> {
             }
         } else if let Some(subject) = &carry.subject {
             who = Some(subject.actor);
+        } else if let Some(last) = carry.last.as_ref().filter(|last| to == Some(SUBJECT) && self.is_of_row(last.end)) {
+            who = Some(last.actor);
         } else if carry.main.is_none() && to.is_none_or(|to| to == SUBJECT) {
             // "To its right and behind it, a van": beside it first.
             carry.lead.get_or_insert(relation);
@@ -348,6 +350,14 @@ impl Parser<'_> {
         let word = |at: usize| self.tokens.get(at).map_or("", |token| token.text.as_str());
         let at = at + usize::from(matches!(word(at), "a" | "the"));
         matches!(word(at), "line" | "row" | "queue" | "column" | "string") && word(at + 1) == "of"
+    }
+
+    /// Whether a noun that ends here is one of "a line of cars", "the queue of stopped vehicles".
+    fn is_of_row(&self, end: usize) -> bool {
+        let words = &self.tokens[end.saturating_sub(4)..end];
+        words.windows(2).any(|pair| {
+            matches!(pair[0].text.as_str(), "line" | "row" | "queue" | "column" | "string") && pair[1].text == "of"
+        })
     }
 
     /// "on the left side of the roadway".

@@ -282,7 +282,8 @@ impl Parser<'_> {
         false
     }
 
-    /// "The van behind it, which had been waiting": the van, of which no verb has told yet.
+    /// "The van behind it, which had been waiting": the van, of which no verb has told yet; "was struck by the van behind it, which had set
+    /// off": the van too.
     fn placed_by_it(&self, all: &[Placed], at: usize, carry: &Carry) -> Option<Mention> {
         let back = at - usize::from(at > 0 && matches!(all[at - 1].chunk, Chunk::Comma));
         let [.., noun, relation, by] = &all[..back] else { return None };
@@ -292,7 +293,14 @@ impl Parser<'_> {
             _ => false,
         };
         let placed = matches!(noun.chunk, Chunk::Noun(_)) && matches!(relation.chunk, Chunk::Relation(_)) && it;
-        carry.subject.clone().filter(|subject| placed && !carry.has_verb && subject.end == relation.first)
+        let subject = carry.subject.clone();
+        let agent = || {
+            let frame =
+                carry.frame.map(|frame| &self.frames[frame]).filter(|frame| frame.passive && frame.is_contact())?;
+            let actor = frame.who.filter(|actor| placed && *actor != SUBJECT && noun.end == relation.first)?;
+            Some(Mention { actor, piece: None, person: None, end: noun.end })
+        };
+        subject.filter(|subject| placed && !carry.has_verb && subject.end == relation.first).or_else(agent)
     }
 
     /// "yielded to a fire truck, with its siren on, traveling south": behind the second comma it is still told of the truck.

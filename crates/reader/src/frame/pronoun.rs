@@ -254,7 +254,14 @@ impl Parser<'_> {
     /// Whether the noun that ends here stands behind "with": "with the large van".
     pub(super) fn is_behind_with(&self, end: usize) -> bool {
         let from = end.saturating_sub(5);
-        let article = |at: usize| matches!(self.tokens[at].text.as_str(), "a" | "an" | "another" | "two" | "the");
+        // "with several cars ahead of it", "with traffic behind it".
+        let article = |at: usize| {
+            let word = self.tokens[at].text.as_str();
+            matches!(
+                word,
+                "a" | "an" | "another" | "two" | "the" | "three" | "four" | "several" | "some" | "other" | "more"
+            ) || matches!(word, "multiple" | "numerous" | "traffic" | "cars" | "vehicles")
+        };
         let with = self.tokens[from..end].iter().rposition(|token| token.text == "with").map(|at| from + at);
         with.is_some_and(|with| with + 1 < end && article(with + 1))
     }

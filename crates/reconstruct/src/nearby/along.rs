@@ -93,6 +93,19 @@ impl<'a> Scene<'a> {
         Some(Way::straight(self.road(s_m, self.at(0).1), thing.states[0].speed(), 0.0))
     }
 
+    /// In the ego's lane ahead of a partner that stands or backs there, and before the junction.
+    fn stands_ahead_of_partner(&self, half_m: f64) -> Vec<Way> {
+        let Some(track) = self.partner.filter(|_| self.told.origin == Origin::Ahead) else { return Vec::new() };
+        let own_m = self.at(self.until).1;
+        let places = track.states[..=self.until].iter().map(|state| self.ground.beside(state.position()));
+        let farthest =
+            places.filter(|(_, t_m)| (t_m - own_m).abs() < 0.5 * LANE_M).map(|(s_m, _)| s_m).reduce(f64::max);
+        let front_m = farthest.map(|s_m| s_m + 0.5 * track.length_m + half_m);
+        let before = |s_m: &f64| !self.ground.junction || s_m + half_m <= self.ground.first_m();
+        let places = [2.5, 1.5, 4.0].into_iter().filter_map(|on_m| Some(front_m? + on_m)).filter(before);
+        places.map(|s_m| Way::stands(self.road(s_m, own_m))).collect()
+    }
+
     pub(super) fn stands_ahead(&self, half_m: f64, least_m: f64) -> Vec<Way> {
         let (s_m, _) = self.at(self.until);
         let front_m = s_m + self.front_m() + half_m;
@@ -106,7 +119,8 @@ impl<'a> Scene<'a> {
         let inside = |s_m: f64| self.ground.junction && s_m + half_m > self.ground.first_m() && s_m < across_m;
         let beyond = self.ground.junction.then(|| Way::stands(self.road(across_m + 1.0, 0.0)));
         let stands = |(s_m, t_m): (f64, f64)| Way::stands(self.road(s_m, t_m));
-        places.filter(|(s_m, _)| !inside(*s_m)).map(stands).chain(beyond).collect()
+        let ahead = self.stands_ahead_of_partner(half_m);
+        ahead.into_iter().chain(places.filter(|(s_m, _)| !inside(*s_m)).map(stands)).chain(beyond).collect()
     }
 
     /// Behind the ego: it follows one that drives, comes along and stands, or stands where the ego does from the start.

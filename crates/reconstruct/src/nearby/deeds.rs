@@ -72,6 +72,11 @@ impl Scene<'_> {
         list
     }
 
+    /// Whether the ego stands first, and drives on then: who goes on ahead stood there too.
+    pub(super) fn ego_moves_off(&self) -> bool {
+        stands(self.ego, self.until).first().is_some_and(|(from, to)| *from == 0 && *to < self.until)
+    }
+
     /// Ahead of the ego: it stands there, and sets off before the ego does.
     pub(super) fn setting_off(&self, half_m: f64) -> Vec<Way> {
         let stood = stands(self.ego, self.until);

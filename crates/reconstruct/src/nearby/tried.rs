@@ -79,6 +79,9 @@ impl<'a> Scene<'a> {
             }
             Some(Origin::Ahead) => {
                 list.extend(self.loses(half_m));
+                if near.does == Does::Drives && self.ego_moves_off() {
+                    list.extend(self.setting_off(half_m));
+                }
                 if !stands {
                     list.extend(self.leads_round(half_m));
                 }

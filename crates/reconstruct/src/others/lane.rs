@@ -53,7 +53,7 @@ impl Scene<'_> {
         let pose = match self.told.sv_aside() {
             // In the lane, or in that into which the ego changes.
             Some(aside) => {
-                let changes = aside.to_t_m.abs() >= LANE_M && !leaves_lane(self.told);
+                let changes = aside.to_t_m.abs() >= LANE_M && !leaves_lane(self.told) && !extra.first;
                 let lane_m = if changes { aside.to_t_m } else { 0.0 };
                 // Clear of an ego that is on its way out.
                 let met_m = self.at(self.until).0 + self.front_m() + 0.5 * length_m + CLEAR_M;

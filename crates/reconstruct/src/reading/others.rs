@@ -114,7 +114,10 @@ pub(super) fn wanted(told: &Told, account: &Account) -> Vec<Extra> {
         let sets_off = sets_off(told) && !parked && !leaves_lane(told) || lets_in_at_green(told, other);
         let goes = role == Role::Lead && sets_off || drives_on.is_some();
         let first = drives_on == Some(true);
-        let again = role == Role::Lead && story.stands_again(other);
+        let late = story.is_slowed_for_later(told, other);
+        // Of whom no deed is told where the ego slows for it again, it has moved up as that did.
+        let moves_up = (late || story.is_placed_as_it_slows(told, other)) && before_contact(other).next().is_none();
+        let again = role == Role::Lead && (story.stands_again(other) || moves_up);
         match list.iter_mut().find(|extra| extra.role == role) {
             Some(known)
                 if kind.partner_kind().is_none_or(|kind| known.kind.partner_kind() == Some(kind))
@@ -147,7 +150,7 @@ pub(super) fn wanted(told: &Told, account: &Account) -> Vec<Extra> {
                     parked,
                     first,
                     again,
-                    late: story.is_slowed_for_later(told, other),
+                    late,
                     awaited,
                     behind,
                     between,
@@ -228,7 +231,7 @@ fn is_drawn(told: &Told, role: Role) -> bool {
         // Who was in the way of an ego that stood, and has left, may have left something there.
         Role::Walker if told.thing.is_some() => drives && sets_off(told),
         // Ahead of a partner that is ahead itself, and stands or backs there.
-        Role::Lead => drives && told.thing.is_none() && (told.origin != Origin::Ahead || waits_ahead(told)),
+        Role::Lead => told.thing.is_none() && (drives && told.origin != Origin::Ahead || waits_ahead(told)),
         Role::Slower | Role::Thing => drives && told.thing.is_none() && told.origin != Origin::Ahead,
         _ => drives && told.thing.is_none(),
     }

@@ -138,6 +138,16 @@ impl Story<'_> {
         (named || between) && told.sv.stood_first
     }
 
+    /// Whether the words that tell where somebody is tell that the ego, which had stood, slowed again: "it moved off, and slowed for the
+    /// traffic ahead".
+    pub(super) fn is_placed_as_it_slows(&self, told: &Told, other: &Other) -> bool {
+        let last = self.account.sv.acts.iter().rfind(|fact| !fact.after_contact).filter(|fact| fact.act == Act::Slow);
+        let slows = last.filter(|_| told.sv.state == ContactState::Moving && told.sv.stood_first);
+        let place = other.place.as_ref().and_then(|fact| span(&fact.source));
+        let both = slows.and_then(|fact| span(&fact.source)).zip(place);
+        both.is_some_and(|((start, end), (first, last))| first <= start && end <= last)
+    }
+
     /// Whether somebody on foot, or an animal, is whom the ego slowed or stood for.
     pub(super) fn is_met(&self, other: &Other) -> bool {
         let Some((named, _)) = span(&other.kind.source) else { return false };
@@ -184,22 +194,25 @@ impl Story<'_> {
     }
 
     /// Whether somebody ahead is only told to have gone on, before the ego came to the stop in which it stands, for no queue or vehicle ahead.
+    /// An ego that had stood before did so behind that one.
     pub(super) fn has_gone(&self, told: &Told, other: &Other) -> bool {
         let waits = |reason: &StandReason| matches!(reason, StandReason::Queue | StandReason::LeadVehicle);
         let stop = self.account.sv.acts.iter().rfind(|fact| fact.act == Act::Stop && !fact.after_contact);
         let last = before_contact(other).map(|fact| fact.step).max();
         let stops = told.sv.state == ContactState::Stopped && !told.reasons.iter().any(waits);
         let goes = before_contact(other).all(|fact| matches!(fact.act, Act::SetOff | Act::Follow | Act::Accelerate));
-        stops && goes && last.is_some_and(|last| stop.is_some_and(|stop| last < stop.step))
+        let stood = |fact: &ActFact| matches!(fact.act, Act::Stop | Act::Hold) && last.is_some_and(|at| fact.step < at);
+        let stood = self.account.sv.acts.iter().any(stood);
+        stops && goes && !stood && last.is_some_and(|last| stop.is_some_and(|stop| last < stop.step))
     }
 
-    /// Whether somebody stands, or comes to a stop, behind that the ego set off, and the ego slows or stops again.
+    /// Whether somebody slows, stands, or comes to a stop, behind that the ego set off, and the ego slows or stops again.
     pub(super) fn stands_again(&self, other: &Other) -> bool {
         let ego = || self.account.sv.acts.iter().filter(|fact| !fact.after_contact);
         let Some(off) = ego().filter(|fact| fact.act == Act::SetOff).map(|fact| fact.step).max() else { return false };
         let slows = ego().any(|fact| fact.step > off && matches!(fact.act, Act::Slow | Act::Stop));
         let last = before_contact(other).max_by_key(|fact| fact.step);
-        slows && last.is_some_and(|fact| fact.step > off && matches!(fact.act, Act::Hold | Act::Stop))
+        slows && last.is_some_and(|fact| fact.step > off && matches!(fact.act, Act::Hold | Act::Stop | Act::Slow))
     }
 
     pub(super) fn role(&self, told: &Told, other: &Other) -> Option<Role> {

@@ -51,7 +51,7 @@ pub(crate) const CREEPS_MPS: f64 = 4.0;
 
 /// Whether the partner stands in the queue ahead of the ego, or backs out of it.
 pub(crate) fn waits_ahead(told: &Told) -> bool {
-    let queue = told.reasons.contains(&StandReason::Queue) && told.sv.state == ContactState::Stopped;
+    let queue = told.reasons.contains(&StandReason::Queue) && told.sv.state.stands();
     queue && told.origin == Origin::Ahead && told.cp.state == ContactState::Reversing
 }
 

@@ -21,6 +21,7 @@ mod others;
 mod own_way;
 mod places;
 mod places_of_others;
+mod queues;
 mod roads_left;
 mod roadside;
 mod sabotage;
