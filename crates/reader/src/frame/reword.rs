@@ -27,6 +27,7 @@ pub(super) fn apply(tokens: &mut Vec<Token>) {
     turn_out_to_be(tokens);
     drive_as_company(tokens);
     part_owners(tokens);
+    leave_in_reverse(tokens);
 }
 
 /// "a stretch of the road that had been taken up", "a missing section of pavement": a hole.
@@ -479,6 +480,25 @@ fn made_to_stop(tokens: &mut Vec<Token>) {
             continue;
         }
         makes.clone_into(&mut tokens[at].text);
+    }
+}
+
+/// "reversed while unparking", "backed up while leaving its space": out of there in reverse, and no second way.
+fn leave_in_reverse(tokens: &mut [Token]) {
+    const BACKS: [&str; 5] = ["reversed", "reversing", "reverse", "backed", "backing"];
+    for at in 0..tokens.len().saturating_sub(2) {
+        let up = usize::from(tokens[at + 1].text == "up");
+        let Some([first, second]) = tokens.get(at + up + 1..at + up + 3) else { continue };
+        let to = match (first.text.as_str(), second.text.as_str()) {
+            ("while" | "when", "unparking") => ["completely", "completely"],
+            ("while" | "when", "leaving" | "exiting" | "departing") => ["out", "of"],
+            _ => continue,
+        };
+        if BACKS.contains(&tokens[at].text.as_str()) {
+            for (token, word) in tokens[at + up + 1..].iter_mut().zip(to) {
+                word.clone_into(&mut token.text);
+            }
+        }
     }
 }
 

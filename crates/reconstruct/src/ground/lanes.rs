@@ -166,7 +166,7 @@ impl Told {
         let left = side_of(&self.sv.zones) == Some(1.0);
         let against = matches!(
             (self.origin, self.cp.turning),
-            (Origin::Opposite, Turning::No | Turning::Left)
+            (Origin::Opposite, Turning::No)
                 | (Origin::Cross { side: LeftRight::Left }, Turning::Right)
                 | (Origin::Cross { side: LeftRight::Right }, Turning::Left)
         );

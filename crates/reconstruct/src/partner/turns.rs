@@ -42,9 +42,9 @@ fn bend_from_lane(
     pace: &Pace,
     arm_m: f64,
 ) -> Option<(Pose, Vec<Pose>)> {
-    let (bent, radius_m) = lanes::bend_from_lane(told, (&staging.ground, staging.sv), end, (came, radius_m))?;
-    let poses = if bent.position.distance(end.position) > 0.1 { vec![bent, end] } else { vec![end] };
-    by_bend(bend_before(bent, came, radius_m, arm_m), poses, pace, arm_m)
+    let bend = lanes::bend_from_lane(told, (&staging.ground, staging.sv), end, (came, radius_m))?;
+    let poses = if bend.end.position.distance(end.position) > 0.1 { vec![bend.end, end] } else { vec![end] };
+    by_bend(bend_before(bend.end, came, bend.radius_m, arm_m), poses, pace, arm_m)
 }
 
 /// Where a bend of this radius that ends in a pose begins.

@@ -179,6 +179,7 @@ impl Told {
             close: true,
             plainly: false,
             back_straight: false,
+            any_lane: false,
             contact_s: CONTACT_S,
             choices: Choices::default(),
             assumed,

@@ -60,8 +60,13 @@ impl Told {
             let more = may.then(|| Self { more_lanes: true, ..told.clone() });
             [told].into_iter().chain(more)
         };
+        // Who turns does so out of the lane for that, where it can with all of them.
+        let with_any_lane = |told: Self| {
+            let any = told.turns_out_of_other_way().then(|| Self { any_lane: true, ..told.clone() });
+            [told].into_iter().chain(any)
+        };
         let told = self.by_origin().into_iter().flat_map(Self::with_junction).flat_map(with_rig);
-        told.flat_map(with_extras).flat_map(with_lanes).collect()
+        told.flat_map(with_extras).flat_map(with_lanes).flat_map(with_any_lane).collect()
     }
 }
 

@@ -128,6 +128,8 @@ pub(crate) struct Told {
     pub(crate) plainly: bool,
     /// The partner comes straight to where it touches, also beside its lane.
     pub(crate) back_straight: bool,
+    /// The partner turns out of any lane of its road, and not out of the one for its turn.
+    pub(crate) any_lane: bool,
     /// When they touch. [s]
     pub(crate) contact_s: f64,
     pub(crate) choices: Choices,

@@ -184,7 +184,14 @@ impl Told {
         // Who backs out of the lane ahead does so in that.
         let backs = self.origin == Origin::Ahead && self.cp.state == ContactState::Reversing;
         let backs = backs && self.cp.slants.is_none() && !self.cp.backs_in;
-        let drives = (self.cp.state == ContactState::Moving || backs) && self.cp.turning == Turning::No;
+        // Who turns from beside the ego, out of no lane that is counted, came along one of its direction until then.
+        let beside = matches!(self.origin, Origin::Beside { .. }) && (self.cp.lane.is_none() || self.turns_abreast());
+        let until_then = match self.cp.turning {
+            Turning::No => true,
+            Turning::Left | Turning::Right => beside,
+            Turning::Round => false,
+        };
+        let drives = (self.cp.state == ContactState::Moving || backs) && until_then;
         let street = !matches!(
             self.place,
             PlaceKind::Highway | PlaceKind::ParkingLot | PlaceKind::Garage | PlaceKind::Driveway | PlaceKind::Alley

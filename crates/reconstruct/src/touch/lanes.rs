@@ -178,13 +178,21 @@ const STRAIGHT_M: f64 = 15.0;
 const TIGHTER: [f64; 2] = [1.0, 0.75];
 const BEGINS_M: f64 = 0.3;
 
-/// Where a bend ends that begins in the middle of a lane and leads to a pose, and its radius: at the pose, or before it. [m]
+/// A bend that begins in the middle of a lane and leads to a pose: where it ends, at the pose or before it, its radius, and how many lanes lie
+/// between that lane and the one for its turn. [m, 1]
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct LaneBend {
+    pub(crate) end: Pose,
+    pub(crate) radius_m: f64,
+    lanes_off: usize,
+}
+
 pub(crate) fn bend_from_lane(
     told: &Told,
     (ground, sv): (&Ground, Pose),
     end: Pose,
     (came, radius_m): (f64, f64),
-) -> Option<(Pose, f64)> {
+) -> Option<LaneBend> {
     let lanes = Lanes::of(ground, came).filter(|_| !told.back_straight && told.comes_along_lanes())?;
     let arm_m = recrash_roads::arm_m(told.cp.kind, size_of(&told.cp).0);
     let (turn, way) = (math::wrap_angle(end.heading - came), Vec2::from_heading(end.heading));
@@ -194,13 +202,27 @@ pub(crate) fn bend_from_lane(
         let on_m = gains_m.max(0.0) / math::sin(turn).abs().max(0.1);
         (gains_m > -BEGINS_M && on_m < STRAIGHT_M).then_some(on_m)
     };
-    TIGHTER.into_iter().find_map(|part| {
-        let radius_m = radius_m * part;
-        let may = lanes.lefts_m.iter().filter(|lane_m| lanes.may_lead(told, sv, **lane_m));
-        let found = may.filter_map(|lane_m| straight(radius_m, *lane_m));
-        let on_m = found.min_by(f64::total_cmp)?;
-        Some((Pose { position: end.position - way * on_m, ..end }, radius_m))
-    })
+    let off = |lane: usize| if turn > 0.0 { lane } else { lanes.lefts_m.len() - 1 - lane };
+    let bends = lanes.lefts_m.iter().enumerate().filter(|(_, lane_m)| lanes.may_lead(told, sv, **lane_m));
+    let bends = bends.flat_map(|(lane, lane_m)| {
+        let parts = TIGHTER.into_iter().enumerate();
+        let lanes_off = if told.turns_out_of_other_way() && !told.any_lane { off(lane) } else { 0 };
+        parts.filter_map(move |(tighter, part)| {
+            let on_m = straight(radius_m * part, *lane_m)?;
+            let end = Pose { position: end.position - way * on_m, ..end };
+            Some(((lanes_off, tighter), on_m, LaneBend { end, radius_m: radius_m * part, lanes_off }))
+        })
+    });
+    bends.min_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))).map(|(_, _, bend)| bend)
+}
+
+impl Told {
+    /// Whether the partner turns out of the opposite direction or the crossing road, and no lane of that is told: "an oncoming sedan turned
+    /// left" does so out of the lane beside the middle.
+    pub(crate) fn turns_out_of_other_way(&self) -> bool {
+        let turns = matches!(self.cp.turning, Turning::Left | Turning::Right);
+        turns && matches!(self.origin, Origin::Opposite | Origin::Cross { .. }) && self.cp.lane.is_none()
+    }
 }
 
 /// Who goes straight on has turned by no more than this. [rad]
@@ -222,7 +244,7 @@ pub(super) fn bends(told: &Told, (ground, sv): (&Ground, Pose), cp: Pose, came: 
     }
     if matches!(told.cp.turning, Turning::Left | Turning::Right) {
         let radius_m = turn_m(told);
-        return if bend_from_lane(told, (ground, sv), cp, (came, radius_m)).is_some() { 0 } else { NOWHERE };
+        return bend_from_lane(told, (ground, sv), cp, (came, radius_m)).map_or(NOWHERE, |bend| bend.lanes_off as u32);
     }
     // Along the middle of a narrow street, as straight as it can.
     if told.squeezes_by() {

@@ -161,6 +161,55 @@ fn two_that_turn_side_by_side_come_along_two_lanes_of_their_direction() {
     assert!((2.6..4.2).contains(&left_m), "{left_m} m to the left");
 }
 
+/// The lane of its direction in which the partner begins, and how many there are; 0 is the leftmost. Of who comes towards the ego, which is
+/// in the rightmost lane.
+fn oncoming_lane(made: &Reconstruction) -> (usize, usize) {
+    let (own, oncoming) = lanes(made);
+    (((begins(made).1 / 3.4).round() as usize).checked_sub(own).expect("its own side"), oncoming)
+}
+
+#[test]
+fn who_turns_left_out_of_the_opposite_direction_does_so_out_of_the_lane_beside_the_middle() {
+    let texts = [
+        "The AV was traveling north straight through the intersection. An oncoming sedan made a left turn and the front left of the sedan \
+         made contact with the rear left of the AV.",
+        "The AV was stopped in the intersection of Elm Street and Oak Street. A van traveling in the opposite direction began to turn left, \
+         and the left side of the van made contact with the rear left of the AV.",
+        "As the AV was driving north through the junction, a pickup from the opposite direction turned left across its path and struck the \
+         left side of the AV with its front.",
+    ];
+    for text in texts {
+        let shown = made(&story(text));
+        assert_eq!(oncoming_lane(&shown), (0, 2), "{text}");
+    }
+}
+
+#[test]
+fn who_turns_left_out_of_a_told_lane_does_so_out_of_that() {
+    let mut account = story(
+        "The AV was traveling north straight through the intersection. An oncoming sedan made a left turn and the front left of the sedan \
+         made contact with the rear left of the AV.",
+    );
+    account.partner.as_mut().expect("a partner").lane = Some(Fact::by_rule(LaneWord::Right, "the lane"));
+    assert_eq!(oncoming_lane(&made(&account)), (1, 2));
+}
+
+#[test]
+fn who_turns_off_out_of_a_lane_beside_the_ego_has_not_come_along_the_other_side() {
+    for text in [
+        "The AV was traveling south in the right lane of Elm Street. A sedan on the left of the AV changed lanes and made a right turn across \
+         the right lane into a garage, and the front right of the sedan made contact with the rear left of the AV.",
+        "The AV was in the rightmost lane of Pine Road when a van beside it on the left changed lanes, then began to turn right towards a \
+         filling station, and the right side of the van made contact with the front left of the AV.",
+    ] {
+        let shown = made(&story(text));
+        let own = lanes(&shown).0 as f64;
+        let states = &partner(&shown).0[..before_contact(&shown)];
+        let left_m = states.iter().map(|state| state.y - shown.rollout.ego_track().states[0].y).fold(0.0, f64::max);
+        assert!(left_m < 3.4 * (own - 0.5), "{left_m} m to the left, {own} lanes: {text}");
+    }
+}
+
 #[test]
 fn who_creeps_into_an_ego_that_stands_came_to_a_stop_behind_it() {
     let text = "The AV was stopped in a queue of traffic on Elm Street. A sedan behind the AV accelerated and the front of the sedan made contact \
