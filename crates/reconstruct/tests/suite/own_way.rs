@@ -237,6 +237,16 @@ fn an_ego_of_which_a_column_alone_tells_a_turn_has_yet_to_begin_it_while_it_come
 }
 
 #[test]
+fn an_ego_that_left_off_its_turn_to_stop_stands_in_it() {
+    let made = made(&story(
+        "The AV began to enter the intersection to turn right onto Oak Street, but stopped before completing the turn to yield to a pedestrian. A \
+         pickup behind the AV made contact with the rear of the AV.",
+    ));
+    let ego = &made.rollout.ego_track().states[..=before_contact(&made)];
+    assert!(ego[ego.len() - 1].heading < -0.2, "{:?}", ego[ego.len() - 1]);
+}
+
+#[test]
 fn who_comes_from_the_side_of_an_ego_that_drove_on_after_its_turn_does_so_from_that_side() {
     let mut account = story(
         "The AV was traveling on Elm Street, completed a right turn onto Oak Street and proceeded straight through the intersection with Main Street. \
