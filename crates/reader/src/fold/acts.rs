@@ -408,7 +408,8 @@ fn act_of(reading: &Reading<'_>, number: usize, frame: &Frame, pushed: bool, so_
         Act::Enter if enters_a_lane(reading, number, frame) => Act::LaneChange,
         Act::Follow | Act::SetOff | Act::Drift if comes_out => Act::PullOut,
         Act::Follow if goes_on_from_a_stand(reading, number, frame, &words) => Act::SetOff,
-        Act::Follow if sets_off_at_green(reading, number, frame) || leaves_rest(reading, frame) => Act::SetOff,
+        Act::Follow if sets_off_at_green(reading, number, frame) => Act::SetOff,
+        Act::Follow | Act::Accelerate if leaves_rest(reading, frame) => Act::SetOff,
         Act::Follow if sets_off_with_subject(reading, frame, &words) => Act::SetOff,
         Act::Follow if moved().is_none() && goes_at_green(reading, frame, &words) => Act::SetOff,
         // Who came along, or "began to proceed straight on", and was "beginning to enter" did not stand.
@@ -692,7 +693,7 @@ pub(super) fn sets_off_at_green(reading: &Reading<'_>, number: usize, frame: &Fr
     frame.act() == Some(Act::Follow) && slowed.is_some_and(red)
 }
 
-/// "moved forward from a standing position", "rolled on from a stop": who goes on so had stood. "from a stop sign" is a place.
+/// "moved forward from a standing position", "accelerated from a stop": who goes on so had stood. "from a stop sign" is a place.
 pub(super) fn leaves_rest(reading: &Reading<'_>, frame: &Frame) -> bool {
     let sentence = reading.story.sentences[frame.sentence];
     let words = &reading.story.tokens[frame.first..sentence.end.min(frame.end + REST_WITHIN)];
@@ -707,7 +708,7 @@ pub(super) fn leaves_rest(reading: &Reading<'_>, frame: &Frame) -> bool {
         ("stop" | "halt", next) => !matches!(next, "sign" | "line" | "bar"),
         (word, _) => matches!(word, "standstill" | "rest"),
     };
-    frame.act() == Some(Act::Follow) && frame.happened() && from && stands
+    matches!(frame.act(), Some(Act::Follow | Act::Accelerate)) && frame.happened() && from && stands
 }
 
 /// "from a stop" stands so near behind the verb. [tokens]

@@ -59,6 +59,11 @@ fn turn_of(reading: &Reading<'_>, actor: Actor) -> Option<Turned> {
             let back = reading.did(actor, Act::Reverse);
             return (waits && goes && !back).then_some(Turned { words, number, side, begun: true });
         }
+        if let Some((words, side)) = stopped_within(reading, at) {
+            let number = told_with(reading, actor, at)?;
+            let stands = matches!(reading.story.frames[number].act(), Some(Act::Stop | Act::Hold));
+            return stands.then_some(Turned { words, number, side, begun: false });
+        }
         let words = slip_lane(reading, at).filter(|_| actor == SUBJECT)?;
         let number = told_with(reading, actor, at)?;
         Some(Turned { words, number, side: Some(LeftRight::Right), begun: false })
@@ -98,6 +103,24 @@ fn left_off(reading: &Reading<'_>, at: usize) -> Option<(Range<usize>, Option<Le
         side(before - 1).or(side(before + 1))
     };
     whose.then(|| (at..turn.max(end) + 1, side(turn - 1).or_else(told)))
+}
+
+/// "came to a stop midway through its right turn": it was in that.
+fn stopped_within(reading: &Reading<'_>, at: usize) -> Option<(Range<usize>, Option<LeftRight>)> {
+    let tokens = &reading.story.tokens;
+    let word = |at: usize| tokens.get(at).map_or("", |token| token.text.as_str());
+    let into = match (word(at), word(at + 1), word(at + 2)) {
+        ("midway" | "halfway" | "partway", "through" | "into", _) => at + 2,
+        ("part", "way", "through" | "into") => at + 3,
+        _ => return None,
+    };
+    let turn = (into + 1..into + 4).find(|&at| word(at) == "turn")?;
+    let side = (into..turn).find_map(|at| match word(at) {
+        "left" => Some(LeftRight::Left),
+        "right" => Some(LeftRight::Right),
+        _ => None,
+    });
+    matches!(word(into), "its" | "the" | "a").then_some((at..turn + 1, side))
 }
 
 /// What was left off stands so near behind "before". [tokens]

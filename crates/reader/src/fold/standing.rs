@@ -79,7 +79,8 @@ pub(super) fn state(reading: &Reading<'_>, actor: Actor) -> (Option<Fact<Contact
             Act::SetOff if begins_to_go_on(reading, number, frame) || drives_already(reading, number, frame) => {
                 Act::Follow
             }
-            Act::Follow if sets_off_at_green(reading, number, frame) || leaves_rest(reading, frame) => Act::SetOff,
+            Act::Follow if sets_off_at_green(reading, number, frame) => Act::SetOff,
+            Act::Follow | Act::Accelerate if leaves_rest(reading, frame) => Act::SetOff,
             act => act,
         };
         told.add(reading, frame, act);

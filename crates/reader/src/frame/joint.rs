@@ -140,7 +140,7 @@ impl Parser<'_> {
     fn goes_aside(&mut self, carry: &mut Carry) {
         let Some(frame) = carry.frame.map(|frame| self.frames[frame].clone()) else { return };
         let moves = matches!(frame.sense, Sense::Act(Act::Follow | Act::SetOff | Act::Accelerate));
-        if moves && frame.who != Some(SUBJECT) {
+        if moves {
             self.frames.push(Frame { sense: Sense::Act(Act::Drift), side: None, ..frame });
             carry.frame = Some(self.frames.len() - 1);
         }

@@ -33,7 +33,9 @@ const WORDS: usize = 6;
 pub(super) fn apply(tokens: &mut [Token]) {
     for at in 0..tokens.len().saturating_sub(2) {
         if let Some((from, is_clause)) = midway(tokens, at) {
-            if let Some(named) = named(tokens, from).filter(|named| named.does != Does::Stop) {
+            let stopped = stops_within(tokens, at);
+            let told = |named: &Named| named.does != Does::Stop && !(stopped && named.does == Does::Turn);
+            if let Some(named) = named(tokens, from).filter(told) {
                 let first = if is_clause {
                     "while".clone_into(&mut tokens[at].text);
                     at + 1
@@ -71,6 +73,13 @@ fn midway(tokens: &[Token], at: usize) -> Option<(usize, bool)> {
         ("in", "a" | "its" | "an", ..) if begins && ends_at_comma(tokens, at + 1) => (at + 1, false),
         _ => return None,
     })
+}
+
+/// "stopped midway through its turn": who stands in it has begun it, and turns no more (`fold/nominal.rs`).
+fn stops_within(tokens: &[Token], at: usize) -> bool {
+    let through = matches!(tokens[at].text.as_str(), "midway" | "halfway" | "partway" | "part");
+    let last = at.checked_sub(1).map_or("", |last| tokens[last].text.as_str());
+    through && matches!(last, "stopped" | "stop" | "halt" | "halted" | "stopping" | "stationary" | "standstill")
 }
 
 fn ends_at_comma(tokens: &[Token], from: usize) -> bool {

@@ -454,7 +454,8 @@ fn begins_to_move_over(parser: &Parser<'_>, verb: &Spoken<'_>, _carry: &Carry) -
     }
     let word = |at: usize| parser.tokens.get(placed.end + at).map_or("", |token| token.text.as_str());
     let lane = (1..7).take_while(|at| !matches!(word(*at), "," | "." | "and")).any(|at| word(at) == "lane");
-    let over = word(0) == "over" || matches!(word(0), "left" | "right") || leads_aside(&word);
+    let far = how_far(&word);
+    let over = word(0) == "over" || matches!(word(far), "left" | "right") || leads_aside(&|at| word(far + at));
     match word(0) {
         "into" | "onto" if lane => Some(Sense::Act(Act::LaneChange)),
         "toward" | "towards" | "to" if lane => Some(Sense::Act(Act::Drift)),
@@ -567,16 +568,28 @@ fn leaves_its_lane(parser: &Parser<'_>, verb: &Spoken<'_>, carry: &Carry) -> Opt
     (stays && carry.negated && lane && single(verb.placed())).then_some(Sense::Act(Act::Drift))
 }
 
-/// "moved a little to the left": over.
+/// "moved a little to the left", "proceeded a short distance to the right": over.
 fn moves_a_little_aside(parser: &Parser<'_>, verb: &Spoken<'_>, _carry: &Carry) -> Option<Sense> {
-    let moves = verb.sense == Sense::Act(Act::Follow) && verb.word(parser).starts_with("mov") && single(verb.placed());
+    const MOVES: [&str; 4] = ["mov", "proceed", "pull", "advanc"];
+    let moves = matches!(verb.sense, Sense::Act(Act::Follow | Act::SetOff))
+        && MOVES.iter().any(|stem| verb.word(parser).starts_with(stem));
     let word = |at: usize| parser.tokens.get(verb.placed().end + at).map_or("", |token| token.text.as_str());
-    let how = match (word(0), word(1)) {
-        ("a", "little" | "bit") => 2,
-        ("slightly" | "gradually" | "partly" | "slowly" | "further" | "abruptly" | "suddenly", _) => 1,
-        _ => return None,
-    };
-    (moves && leads_aside(&|at: usize| word(at + how))).then_some(Sense::Act(Act::Drift))
+    let far = how_far(&word);
+    // "proceeded a short distance to the left of the van": that is where it was.
+    let there = word(far + 3) == "of";
+    (moves && far > 0 && leads_aside(&|at| word(far + at)) && !there).then_some(Sense::Act(Act::Drift))
+}
+
+/// "slightly", "a little", "a few feet": so many words tell how far.
+fn how_far<'a>(word: &impl Fn(usize) -> &'a str) -> usize {
+    let little = |word: &str| matches!(word, "distance" | "way" | "amount" | "feet" | "inches" | "meters");
+    match (word(0), word(1), word(2)) {
+        ("a", "little" | "bit", next) => 2 + usize::from(next == "bit"),
+        ("a" | "some" | "about" | "several", _, last) if little(last) => 3,
+        ("several" | "some", last, _) if little(last) => 2,
+        ("slightly" | "gradually" | "partly" | "slowly" | "further" | "abruptly" | "suddenly", ..) => 1,
+        _ => 0,
+    }
 }
 
 /// "moved over slightly to make room", "moved over within its lane", "moved over toward the curb": no lane is changed.

@@ -66,7 +66,7 @@ pub(crate) fn ego_paces(told: &Told, ground: &Ground, sv_s_m: f64) -> (Option<Le
         .or_else(|| before_who_waits(told))
         .or_else(|| before_who_backs(told))
         .or_else(|| towards_who_stands(told))
-        .or_else(|| out_of_line(told, ground))
+        .or_else(|| out_of_line(told))
         .or_else(|| slows_in_turn(told, past_line_m(told, ground, sv_s_m)))
         .unwrap_or_else(|| braked_earlier(pace(contact_s, sv, told.choices.rolling_mps, stood_s), longer_s));
     let begins_s = match sv.state.stands() {
@@ -137,9 +137,9 @@ const LEAVES_BY: f64 = 2.4;
 const JUST_S: f64 = 5.5;
 
 /// Who stood and leaves its line sets off from far enough for that.
-fn out_of_line(told: &Told, ground: &Ground) -> Option<Pace> {
+fn out_of_line(told: &Told) -> Option<Pace> {
     let sv = &told.sv;
-    let aside = told.sv_aside().filter(|aside| !aside.done && ground.drift.is_none())?;
+    let aside = told.sv_aside().filter(|aside| !aside.done)?;
     let sets_off = sv.state == ContactState::SettingOff;
     let stood = sets_off || sv.state == ContactState::Moving && (sv.stood_first || !sv.phases.is_empty());
     let least_m = LEAVES_BY * (aside.to_t_m - aside.from_t_m).abs();

@@ -65,17 +65,7 @@ impl Told {
         if lies_before_turn(self, sv) {
             (self.sv.turning, self.sv.turns_later) = (Turning::No, true);
         }
-        // Whose turn no words tell has yet to begin it where it is hit from behind, or by who passes it.
-        let unsaid = sv.movement.as_ref().is_some_and(|movement| !matches!(movement.source, Source::Words { .. }))
-            && !sv.acts.iter().any(|fact| fact.act == Act::Turn);
-        let slows =
-            self.sv.slowed_from.is_some() || matches!(self.sv.state, ContactState::Stopped | ContactState::SettingOff);
-        let passed = self.cp.movement == Some(Movement::Passing) && self.cp.turning == Turning::No;
-        let behind = self.crash_type == CrashType::FrontToRear || passed;
-        if unsaid && slows && self.origin == Origin::Behind && behind {
-            let turns = matches!(self.sv.turning, Turning::Left | Turning::Right);
-            self.sv.turns_later = turns && !self.enters();
-        }
+        self.turns_later_unsaid(sv);
         // Who runs into the rear of who turns, or waits to, ahead of it has yet to turn.
         let in_line = self.crash_type == CrashType::FrontToRear || self.is_thrown();
         let follows = self.origin == Origin::Behind && in_line;
@@ -144,6 +134,25 @@ fn lies_before_turn(told: &Told, sv: &Party) -> bool {
 }
 
 impl Told {
+    /// Whose turn no words tell has yet to begin it where it is hit from behind, or by who passes it; so has who is told to have come along, or
+    /// slowed, and nothing else, where it is hit from behind, or by who turns the same way across it.
+    fn turns_later_unsaid(&mut self, sv: &Party) {
+        let unsaid = sv.movement.as_ref().is_some_and(|movement| !matches!(movement.source, Source::Words { .. }))
+            && !sv.acts.iter().any(|fact| fact.act == Act::Turn);
+        let turns = matches!(self.sv.turning, Turning::Left | Turning::Right);
+        let slows =
+            self.sv.slowed_from.is_some() || matches!(self.sv.state, ContactState::Stopped | ContactState::SettingOff);
+        let passed = self.cp.movement == Some(Movement::Passing) && self.cp.turning == Turning::No;
+        let behind = self.origin == Origin::Behind;
+        let in_line = behind && (self.crash_type == CrashType::FrontToRear || passed);
+        let before = || sv.acts.iter().filter(|fact| !fact.after_contact);
+        let comes_along = before().next().is_some() && before().all(|fact| matches!(fact.act, Act::Follow | Act::Slow));
+        let across = matches!(self.origin, Origin::Beside { .. }) && self.cp.turning == self.sv.turning;
+        if unsaid && (slows && in_line || comes_along && turns && (behind || across)) {
+            self.sv.turns_later = turns && !self.enters();
+        }
+    }
+
     /// Whether the partner has changed lanes behind the ego, and that slowed or stopped then: it comes straight on since.
     fn changed_lanes_behind(&self) -> bool {
         let merges = matches!(self.cp.movement, Some(Movement::ChangingLanes | Movement::Merging));

@@ -28,8 +28,11 @@ pub(super) fn last_way(party: &Party) -> Option<&ActFact> {
     // A way from a stop that it had made to the next was driven, also where it was only begun.
     let first_stop = before().filter(|fact| matches!(fact.act, Act::Stop | Act::Hold)).map(|fact| fact.step).min();
     let begun = |fact: &&ActFact| {
-        let between = first_stop.is_some_and(|first| first < fact.step) && fact.step < stood;
-        fact.begun && !fact.after_contact && leaves_line(fact.act) && between && stops_after(party, fact.step)
+        let between = first_stop.is_some_and(|first| first < fact.step) && leaves_line(fact.act);
+        // So is a turn that it left off to stop.
+        let left_off = fact.act == Act::Turn && came;
+        let way = (between || left_off) && fact.step < stood;
+        fact.begun && !fact.after_contact && way && stops_after(party, fact.step)
     };
     // Whom it had passed when it came back it passed before that.
     let earlier = |fact: &ActFact| fact.act == Act::Pass && fact.done && fact.side.is_none();

@@ -23,6 +23,9 @@ use std::rc::Rc;
 const LEAST_DRIFT_M: f64 = 7.0;
 const DRIFTS: f64 = 0.12;
 
+/// One that is told to go aside is seen to: it has done half of this. [m]
+const DODGES_M: f64 = 1.2;
+
 /// No ego drifts by more to the contact. [m]
 const FARTHEST_M: f64 = 5.0;
 
@@ -102,7 +105,8 @@ fn drifted(told: &Told, ground: &Ground, sv_s_m: f64, point: (f64, f64), line_m:
     let pace = ego_paces(told, ground, sv_s_m).1;
     // Who stood shortly before stands beside its line already.
     let stood = pace.speed_mps == 0.0 && pace.driven_m < LEAST_DRIFT_M;
-    let by_m = (line_m.signum() * DRIFTS * pace.driven_m, 1.0);
+    let least_m = if told.sv.aside.is_some() { DODGES_M } else { 0.0 };
+    let by_m = (line_m.signum() * (DRIFTS * pace.driven_m).max(least_m), 1.0);
     let mut to_t_m = 2.0 * (line_m + point.1 * 0.5 * size_of(&told.sv).1);
     for _ in 0..12 {
         let (by_m, gain) = if stood { by_m } else { (to_t_m, 1.4) };

@@ -212,6 +212,40 @@ fn who_passes_an_ego_that_has_yet_to_turn_comes_by_beside_it() {
     assert_eq!(movement.map(|check| check.expected.as_str()), Some("right turn, or yet to begin"));
 }
 
+const TURNS_ACROSS: &str = "The AV was traveling north in the right lane and approaching the intersection with Oak Street. A truck traveling north in the \
+                            left lane began to turn right onto Oak Street, and the front right of the truck made contact with the left side \
+                            of the AV.";
+
+const COMES_UP: &str = "The AV was traveling north in the right lane and slowing. A motorcycle approached the AV from behind and the front of the \
+                        motorcycle made contact with the rear left of the AV.";
+
+#[test]
+fn an_ego_of_which_a_column_alone_tells_a_turn_has_yet_to_begin_it_while_it_comes_along() {
+    for text in [TURNS_ACROSS, COMES_UP] {
+        let mut account = story(text);
+        account.sv.movement = Some(Fact::of_column(Movement::RightTurn, "SV Pre-Crash Movement"));
+        let made = made(&account);
+        let met = made.rollout.ego_track().states[before_contact(&made)];
+        assert!(met.heading.abs() < 0.1, "{text}: {met:?}");
+    }
+    // Told in words it is met in the turn.
+    let turning = TURNS_ACROSS.replace("approaching the intersection with", "turning right onto");
+    let mut account = story(&turning);
+    account.sv.movement = Some(Fact::of_column(Movement::RightTurn, "SV Pre-Crash Movement"));
+    let made = made(&account);
+    assert!(made.rollout.ego_track().states[before_contact(&made)].heading < -0.3);
+}
+
+#[test]
+fn an_ego_that_left_off_its_turn_to_stop_stands_in_it() {
+    let made = made(&story(
+        "The AV began to enter the intersection to turn right onto Oak Street, but stopped before completing the turn to yield to a pedestrian. A \
+         pickup behind the AV made contact with the rear of the AV.",
+    ));
+    let ego = &made.rollout.ego_track().states[..=before_contact(&made)];
+    assert!(ego[ego.len() - 1].heading < -0.2, "{:?}", ego[ego.len() - 1]);
+}
+
 #[test]
 fn who_comes_from_the_side_of_an_ego_that_drove_on_after_its_turn_does_so_from_that_side() {
     let mut account = story(

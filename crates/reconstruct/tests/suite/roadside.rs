@@ -233,3 +233,14 @@ fn debris_in_the_lane_for_a_turn_is_met_before_it() {
     let shown = made(&account);
     assert!(shown.rollout.ego_track().states[before_contact(&shown)].heading > 0.3);
 }
+
+#[test]
+fn who_stood_and_goes_aside_to_the_kerb_is_seen_to() {
+    let shown = made(&story(
+        "The AV was traveling north and slowed to a stop for a cone in its lane. The AV proceeded forward and to the left to get around the cone, \
+         and the front left of the AV made contact with a curb.",
+    ));
+    let ego = &shown.rollout.ego_track().states[..=before_contact(&shown)];
+    let (first, last) = (ego[0], ego[ego.len() - 1]);
+    assert!(last.y - first.y > 0.5 && ego.iter().any(|state| state.speed() == 0.0), "{last:?}");
+}
