@@ -543,6 +543,9 @@ fn others(reading: &Reading<'_>) -> Vec<Other> {
     all
 }
 
+/// "the doors were standing open": so many words behind it tell how a door stands.
+const STANDS_WITHIN: usize = 3;
+
 /// Whether a door took part.
 fn door(reading: &Reading<'_>) -> Option<Fact<Striker>> {
     let frames = &reading.story.frames;
@@ -555,7 +558,14 @@ fn door(reading: &Reading<'_>) -> Option<Fact<Striker>> {
     let door = |piece: &Option<Piece>| piece.as_ref().is_some_and(|piece| piece.door);
     let stands_open = |frame: &Frame| {
         let words = &reading.story.tokens[..reading.story.sentences[frame.sentence].end];
-        words.windows(2).any(|pair| pair[0].text == "door" && pair[1].text == "open")
+        let doors = (0..words.len()).filter(|at| matches!(words[*at].text.as_str(), "door" | "doors"));
+        let states = |at: usize| words[at + 1..].iter().take(STANDS_WITHIN).take_while(|token| token.text != ",");
+        doors.into_iter().any(|at| states(at).any(|token| matches!(token.text.as_str(), "open" | "ajar")))
+    };
+    // "and the door swung into the AV".
+    let swings = |frame: &Frame| {
+        let verb = reading.story.tokens[frame.first].text.as_str();
+        matches!(verb, "swung" | "swings" | "swinging" | "flew" | "blew") && !frame.passive
     };
     // "was struck by the door of a van that was parked".
     let of_parked = |frame: &Frame| {
@@ -565,7 +575,8 @@ fn door(reading: &Reading<'_>) -> Option<Fact<Striker>> {
     };
     let (_, frame) = opened.or_else(|| {
         frames.iter().enumerate().find(|(_, frame)| {
-            let opens = door(&frame.with) && (stands_open(frame) || of_parked(frame));
+            let stands = (door(&frame.with) || door(&frame.on)) && stands_open(frame);
+            let opens = stands || door(&frame.with) && (of_parked(frame) || swings(frame));
             frame.is_contact() && (open(&frame.with) || open(&frame.on) || opens)
         })
     })?;

@@ -277,6 +277,8 @@ impl Parser<'_> {
         let located = matches!(self.tokens[placed.first].text.as_str(), "on" | "from" | "in") && !of_lane;
         let stays = |act: Option<Act>| match act {
             Some(Act::Park | Act::PullOver) => governs,
+            // "fell to the left", and not "fell to the left of the van".
+            Some(Act::Fall) => located || governs,
             Some(Act::PullOut | Act::LaneChange | Act::Drift | Act::Swerve | Act::Turn | Act::UTurn) => {
                 located || (act == Some(Act::PullOut) && governs)
             }

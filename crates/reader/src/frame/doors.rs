@@ -14,7 +14,10 @@ pub(super) fn settle(frames: &mut [Frame], tokens: &[Token], sentences: &[Senten
             continue;
         }
         let who = frame.who;
-        let owner = if one_of_ours(frame, tokens, sentences) {
+        let of_them = one_of_them(frame, tokens, sentences) && who != Some(SUBJECT);
+        let owner = if of_them {
+            of_vehicle(frames, number, world)
+        } else if one_of_ours(frame, tokens, sentences) {
             Some(SUBJECT)
         } else if who.is_some_and(|who| is_somebody(world, who)) {
             of_vehicle(frames, number, world)
@@ -25,6 +28,9 @@ pub(super) fn settle(frames: &mut [Frame], tokens: &[Token], sentences: &[Senten
         let sentence = frame.sentence;
         let somebody = who.filter(|who| is_somebody(world, *who));
         for other in frames[number..].iter_mut().filter(|other| other.sentence == sentence) {
+            if of_them && other.who == who {
+                other.who = Some(owner);
+            }
             // "..., and it hit the vehicle": the door did.
             let door = other.is_contact() && somebody.is_some();
             if other.who == who && (door || other.act() == Some(Act::OpenDoor)) {
@@ -61,6 +67,13 @@ fn one_of_ours(frame: &Frame, tokens: &[Token], sentences: &[Sentence]) -> bool 
     let Some(at) = words.windows(2).rposition(|pair| pair == ["one", "of"]) else { return false };
     let rest = &words[at + 2..];
     rest.iter().any(|word| people(word)) && !rest.contains(&"of")
+}
+
+/// "the driver of one of them", of cars in a row: whose doors are no passenger's of ours.
+fn one_of_them(frame: &Frame, tokens: &[Token], sentences: &[Sentence]) -> bool {
+    let from = sentences[frame.sentence].first.max(frame.first.saturating_sub(6));
+    let mut words = tokens[from..frame.first].windows(4);
+    words.any(|four| four.iter().map(|token| token.text.as_str()).eq(["of", "one", "of", "them"]))
 }
 
 /// Somebody on foot who was brought on by these words alone.

@@ -52,6 +52,17 @@ pub(super) fn turns_out_to_be(parser: &Parser<'_>, verb: &Spoken<'_>, _carry: &C
     (matches!(verb.sense, Sense::Act(Act::Turn)) && be).then_some(Sense::Other)
 }
 
+/// "its front wheel fell into a ditch": it met that. "The wheel fell off": it met nothing.
+pub(super) fn drops_into_a_hole(parser: &Parser<'_>, verb: &Spoken<'_>, carry: &Carry) -> Option<Sense> {
+    let own = carry.subject.as_ref().is_some_and(|subject| subject.actor == SUBJECT);
+    let drops = verb.sense == Sense::Act(Act::Fall) && own;
+    let placed = verb.placed();
+    let before = &parser.tokens[placed.first.saturating_sub(2)..placed.first];
+    let wheel = before.iter().any(|token| matches!(token.text.as_str(), "wheel" | "wheels" | "tire" | "tires"));
+    let into = |at: usize| parser.tokens.get(at).is_some_and(|token| token.text == "into");
+    (drops && wheel && (into(placed.end) || into(placed.end - 1))).then_some(Sense::Contact)
+}
+
 /// "took off their seatbelts", "turned on its hazard lights": nobody moved.
 pub(super) fn handles_a_thing(parser: &Parser<'_>, verb: &Spoken<'_>, carry: &Carry) -> Option<Sense> {
     let end = verb.placed().end;

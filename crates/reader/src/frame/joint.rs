@@ -52,7 +52,7 @@ impl Parser<'_> {
             Chunk::Joint(joint) => joint != Joint::And || self.tokens[placed.first].text == "and",
             _ => false,
         });
-        let second = noun && self.is_passed_too(carry, behind);
+        let second = noun && (self.is_passed_too(carry, behind) || self.is_other_side(carry, behind));
         if joint == Joint::And && noun && (ends && carry.has_verb || std::mem::take(&mut carry.pair) || second) {
             carry.preposition = Some("and");
             return;
@@ -181,6 +181,14 @@ impl Parser<'_> {
         let passes = frame.act() == Some(Act::Pass) && frame.object.is_some();
         let between = self.tokens[frame.first..frame.end].iter().any(|token| token.text == "between");
         placed && passes && !between && !carry.after_comma && !another_finite(behind, 0)
+    }
+
+    /// "A cyclist passing between the AV and the curb hit it": what it passes on the other side.
+    fn is_other_side(&self, carry: &Carry, behind: &[Placed]) -> bool {
+        let Some(frame) = carry.frame.map(|frame| &self.frames[frame]) else { return false };
+        let between = self.tokens[frame.first..frame.end].iter().any(|token| token.text == "between");
+        let does = matches!(behind.get(1).map(|placed| &placed.chunk), Some(Chunk::Verb(..)));
+        between && does && frame.object.is_some() && behind[0].first == frame.end + 1
     }
 
     /// "As it slowed, there was a van passing": a clause of its own, about who is named behind it.

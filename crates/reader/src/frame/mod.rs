@@ -446,6 +446,7 @@ pub fn sided(act: Act) -> bool {
             | Act::LaneChange
             | Act::Drift
             | Act::Swerve
+            | Act::Fall
             | Act::Pass
             | Act::PullOver
             | Act::PullOut

@@ -6,7 +6,7 @@ use super::row::transitive;
 use crate::chunk::{Chunk, Joint, Placed};
 use crate::lexicon::{Form, Part, Relation, Sense};
 use crate::world::{Actor, SUBJECT};
-use recrash_model::account::{Act, Kind};
+use recrash_model::account::{Act, Kind, KindGroup};
 
 impl Parser<'_> {
     /// Who is meant by `it` and `its`.
@@ -58,6 +58,17 @@ impl Parser<'_> {
         });
         if let Some(other) = behind.filter(|other| hits && *other != SUBJECT && *other != actor) {
             return other;
+        }
+        // "A ladder fell off a truck and the AV ran over it": what fell.
+        let fell = self.frames.iter().rev().find(|frame| {
+            let thing = frame
+                .who
+                .and_then(|who| self.world.actors[who].kind)
+                .is_some_and(|kind| kind.group() == KindGroup::Object);
+            frame.sentence == self.sentence && thing && matches!(frame.act(), Some(Act::Fall | Act::Roll))
+        });
+        if let Some(thing) = fell.and_then(|frame| frame.who).filter(|_| hits && actor == SUBJECT) {
+            return thing;
         }
         match hits {
             // "A motorcycle was eastbound when a van turned across it and clipped it": of a sentence without the subject vehicle.

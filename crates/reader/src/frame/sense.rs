@@ -3,8 +3,8 @@
 //! A new rule goes into [`SENSES`]; each sees what the ones before it made of the verb.
 
 use super::handled::{
-    comes_along, does_not_fall, drops_riders_off, goes_over_the_bars, handles_a_thing, is_closed, is_of_an_alley,
-    launches_another, slides_to_a_stop, turns_in_its_seat, turns_out_to_be, turns_the_wheel,
+    comes_along, does_not_fall, drops_into_a_hole, drops_riders_off, goes_over_the_bars, handles_a_thing, is_closed,
+    is_of_an_alley, launches_another, slides_to_a_stop, turns_in_its_seat, turns_out_to_be, turns_the_wheel,
 };
 use super::parser::{Carry, Parser};
 use super::row::{Spoken, single};
@@ -16,7 +16,7 @@ use recrash_model::account::{Act, Compass, Kind, KindGroup, LeftRight};
 
 type Rule = fn(&Parser<'_>, &Spoken<'_>, &Carry) -> Option<Sense>;
 
-const SENSES: [Rule; 52] = [
+const SENSES: [Rule; 53] = [
     lowers_a_part,
     goes_up_or_down,
     goes_down_a_hill,
@@ -62,6 +62,7 @@ const SENSES: [Rule; 52] = [
     handles_a_thing,
     turns_the_wheel,
     turns_in_its_seat,
+    drops_into_a_hole,
     does_not_fall,
     is_denied_within,
     slides_over,
@@ -373,10 +374,11 @@ fn is_ridden(parser: &Parser<'_>, verb: &Spoken<'_>, _carry: &Carry) -> Option<S
     ridden.then_some(Sense::Other)
 }
 
-/// "The wind blew a cart into it".
+/// "The wind blew a cart into it". What "blew off a truck" came off it.
 fn blows_another(parser: &Parser<'_>, verb: &Spoken<'_>, _carry: &Carry) -> Option<Sense> {
     let blows = verb.sense == Sense::Act(Act::Fall) && matches!(verb.word(parser), "blew" | "blow" | "blowing");
-    (blows && matches!(verb.next(), Some(Chunk::Noun(_)))).then_some(Sense::Push)
+    let off = matches!(parser.tokens[verb.placed().end - 1].text.as_str(), "off" | "of" | "from");
+    (blows && !off && matches!(verb.next(), Some(Chunk::Noun(_)))).then_some(Sense::Push)
 }
 
 /// "had almost come to rest".

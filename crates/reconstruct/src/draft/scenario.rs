@@ -127,7 +127,8 @@ fn with_others(told: &Told, staging: &Staging, mut draft: ScenarioDraft) -> Scen
 fn opens(contact_s: f64, door: &Opening, plan: &mut ActorPlan, parts: &mut Vec<Part>) {
     let (to_deg, over_s) = (door.to_deg, Opening::OPENS_S);
     parts.push(door.part.clone());
-    plan.acts.push(when(contact_s - door.before_s, Deed::Part { part: door.part.id.clone(), to_deg, over_s }));
+    plan.acts
+        .push(when((contact_s - door.before_s).max(0.0), Deed::Part { part: door.part.id.clone(), to_deg, over_s }));
 }
 
 /// Where the task of the system under test has it stop: where it stood for passengers, and where nothing in the scene makes it

@@ -447,13 +447,24 @@ impl<'a> Crash<'a> {
     fn door(&self) -> Option<Check> {
         let (owner, of_ego, of_other) = (self.told.door?, self.ego_part.is_some(), self.other_part.is_some());
         let by_door = if owner == Striker::Sv { of_ego } else { of_other };
-        let observed = match (of_ego, of_other) {
-            (false, false) => "bodies touched",
-            (true, _) => "the ego's door",
-            (_, true) => "the partner's door",
+        let whose = |of_ego: bool| if of_ego { "the ego's door" } else { "the partner's door" };
+        let stood = self.told.layout.stood_open.is_some();
+        let swings = stood && by_door && self.door_swings();
+        let observed = match of_ego || of_other {
+            false => "bodies touched".to_owned(),
+            true => format!("{}{}", whose(of_ego), if swings { ", as it opened" } else { "" }),
         };
-        let whose = if owner == Striker::Sv { "the ego's door" } else { "the partner's door" };
-        Some(check(CheckKind::Door, by_door, whose, observed))
+        let expected = format!("{}{}", whose(owner == Striker::Sv), if stood { ", which stood open" } else { "" });
+        Some(check(CheckKind::Door, by_door && !swings, expected, observed))
+    }
+
+    /// Whether the door that touched was still opening.
+    fn door_swings(&self) -> bool {
+        let (owner, part) = match &self.ego_part {
+            Some(part) => (Some(self.ego_track), Some(part)),
+            None => (self.touch.track, self.other_part.as_ref()),
+        };
+        owner.zip(part).is_some_and(|(owner, part)| swung(self.rollout, owner, part, self.touch.time_s))
     }
 
     fn seen(&self) -> Seen<'_> {

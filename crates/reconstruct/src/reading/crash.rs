@@ -141,7 +141,8 @@ impl Told {
             comes_round,
             comes_over: origin::comes_over(origin, partner, movement),
             order,
-            pushed: partner.did(Act::Pushed)
+            // What "was propelled into the road" by nobody who is told came there.
+            pushed: partner.did(Act::Pushed) && !(thing.is_some() && account.others.is_empty())
                 || crash_type == CrashType::Secondary
                 || account.others.iter().any(|other| other.touched_partner),
             pusher: others::pusher(account),

@@ -1,10 +1,11 @@
 //! The words for the road, and for the places on it.
 
 use crate::reading::words::{span, text};
-use crate::told::layout::{Counted, Layout, Standing};
+use crate::told::layout::{Counted, Layout, Standing, StoodOpen};
 use crate::told::zones::side_of;
 use recrash_model::account::{
-    Account, Act, ActFact, Fact, LaneWord, LeftRight, Origin, Party, RoadFeature, SignalState, Source, told,
+    Account, Act, ActFact, ContactState, Fact, LaneWord, LeftRight, Origin, Party, RoadFeature, SignalState, Source,
+    Striker, told,
 };
 use recrash_model::template::Movement;
 
@@ -40,6 +41,7 @@ impl Layout {
             arrow: turns_on_arrow(&account.sv),
             light_changes: light_changes(&account.sv),
             rear_door: rear_door(account, partner),
+            stood_open: stood_open(account, partner),
         }
     }
 }
@@ -187,6 +189,23 @@ fn rear_door(account: &Account, partner: &Party) -> Option<bool> {
             _ => None,
         })
     })
+}
+
+/// Since when a door had stood open: "with its door open", "a rider opened the door, and a van began to go round".
+fn stood_open(account: &Account, partner: &Party) -> Option<StoodOpen> {
+    let of_sv = told(&account.door)? == Striker::Sv;
+    let (owner, other) = if of_sv { (&account.sv, partner) } else { (partner, &account.sv) };
+    let Some(opened) = owner.acts.iter().find(|fact| fact.act == Act::OpenDoor) else {
+        // "was struck by the door of a parked car": it was opened then.
+        let stands = told(&partner.state).is_some_and(ContactState::stands);
+        let open = account.door.as_ref().is_some_and(|fact| text(&fact.source).contains("open"));
+        let into = !of_sv && stands && !open;
+        let since = if of_sv { StoodOpen::Shortly } else { StoodOpen::AllAlong };
+        return (!into).then_some(since);
+    };
+    let comes = |fact: &ActFact| matches!(fact.act, Act::Pass | Act::SetOff | Act::Reverse) && !fact.after_contact;
+    let then = other.acts.iter().any(|fact| comes(fact) && fact.after_other == Some(opened.step));
+    then.then_some(StoodOpen::Shortly)
 }
 
 fn sources(party: &Party) -> impl Iterator<Item = &Source> {

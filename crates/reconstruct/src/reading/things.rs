@@ -10,6 +10,9 @@ use recrash_model::scenario::Size;
 use recrash_model::template::Movement;
 use recrash_model::zones::ContactZone;
 
+/// Words for the road itself: whose underside touches it comes over where it rises.
+const PAVED: [&str; 4] = ["pavement", "asphalt", "ground", "surface"];
+
 impl Lies {
     /// What the words for it tell.
     pub(super) fn of(thing: &Party, sv: &Side, place: PlaceKind) -> Option<Self> {
@@ -24,7 +27,11 @@ impl Lies {
             Kind::Debris if any(&["spikes"]) => Some(Self::Bump),
             Kind::Pothole if any(&["water meter"]) => Some(Self::Hole),
             Kind::Pothole if any(&["water", "flood", "wet cement"]) => Some(Self::Water),
-            Kind::Pothole if sv.only_above_or_below && turns_in && !any(&["hole", "removed"]) => Some(Self::Edge),
+            // Who scrapes a cover or a plate with its underside has it in the middle.
+            Kind::Pothole if sv.only_below && any(&["cover", "grate", "plate"]) => None,
+            Kind::Pothole if sv.only_above_or_below && (turns_in || any(&PAVED)) && !any(&["hole", "removed"]) => {
+                Some(Self::Edge)
+            }
             Kind::Pothole => Some(Self::Hole),
             _ => None,
         }
@@ -76,7 +83,7 @@ fn words_of<T>(fact: &Option<Fact<T>>) -> Option<String> {
 /// The partner, with what is told of a thing beside its own acts: "rolling into its lane" stands with from where it came.
 pub(super) fn partner(account: &Account) -> Option<Party> {
     let mut partner = account.partner.clone()?;
-    let moves = ["roll", "slid", "blow", "blew", "tumbl", "drift"];
+    let moves = ["roll", "slid", "skid", "blow", "blew", "flew", "fly", "bounc", "tumbl", "drift"];
     let came = words_of(&account.came_from).is_some_and(|text| moves.iter().any(|stem| text.contains(stem)));
     let thing = told(&partner.kind).is_some_and(is_thing);
     if thing && came && partner.state.is_none() && !slides(&partner) {

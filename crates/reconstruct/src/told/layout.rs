@@ -62,6 +62,17 @@ pub(crate) struct Layout {
     pub(crate) light_changes: bool,
     /// The door that took part is told to be a rear one, or a front one.
     pub(crate) rear_door: Option<bool>,
+    /// That door is told to have stood open when the other came.
+    pub(crate) stood_open: Option<StoodOpen>,
+}
+
+/// Since when a door stands open as the other comes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum StoodOpen {
+    /// It was opened shortly before.
+    Shortly,
+    /// Nobody is told to have opened it.
+    AllAlong,
 }
 
 /// The strip that a word for a lane tells; nothing where it tells a driving lane.

@@ -3,6 +3,7 @@
 use crate::ego::plan::sv_at_contact;
 use crate::ground::way::Ground;
 use crate::told::crash::Told;
+use crate::told::layout::StoodOpen;
 use crate::told::side::{Side, Turning, size_of};
 use crate::told::zones::{side_of, zones_off};
 use crate::touch::boxes::{points, velocity};
@@ -20,6 +21,10 @@ use std::rc::Rc;
 
 /// A door that stands open when somebody comes has begun to open so long before. [s]
 const OPENED_BEFORE_S: f64 = 2.0;
+
+/// One that is told to have stood open then has for so long, and one that nobody opened, for longer than there is a scene. [s]
+const OPENED_SHORTLY_S: f64 = 4.0;
+const OPEN_ALL_ALONG_S: f64 = 60.0;
 
 /// Who comes to an open door meets it so far from its end, and who has one swung into him so far. [m]
 const MET_AT_M: f64 = 0.3;
@@ -65,10 +70,15 @@ fn openings(told: &Told, owner: &Side, of_sv: bool) -> Vec<Opening> {
         None if is_rear || of_sv => vec![rear_m, front_m],
         None => vec![front_m, rear_m],
     };
+    let opened_s = match told.layout.stood_open {
+        Some(StoodOpen::AllAlong) => vec![OPEN_ALL_ALONG_S],
+        Some(StoodOpen::Shortly) => vec![OPENED_SHORTLY_S],
+        None => vec![0.5, 0.7, 0.4, 0.9, OPENED_BEFORE_S],
+    };
     let mut list = Vec::new();
     for side in [first, -first] {
         for &x_m in &hinges {
-            for before_s in [0.5, 0.7, 0.4, 0.9, OPENED_BEFORE_S] {
+            for &before_s in &opened_s {
                 let part = Part {
                     id: "door".to_owned(),
                     kind: PartKind::Door,
@@ -138,7 +148,7 @@ pub(super) fn stagings(told: &Told, ground: &Ground) -> Vec<Staging> {
         };
         for (came, heading) in faces {
             for opening in &openings {
-                for &point in met_points(other).iter() {
+                for &point in met_points(told, other).iter() {
                     trial += 1;
                     let Some((cp, owner_zone, other_zone)) = touch(told, opening, sv, heading, point) else { continue };
                     let owner_off = if told.gate_swings { 0 } else { zones_off(&owner.zones, owner_zone) };
@@ -184,11 +194,16 @@ fn beside_line(told: &Told, ground: &Ground) -> Vec<Ground> {
     }
 }
 
-/// Points of the other's outline that the door may meet: shares of half of its length and width.
-fn met_points(other: &Side) -> Vec<(f64, f64)> {
+/// Points of the other's outline that the door may meet: shares of half of its length and width. Who comes along a door that stands open has
+/// come to it with the front of its flank.
+fn met_points(told: &Told, other: &Side) -> Vec<(f64, f64)> {
     use ContactZone as Z;
     let usual = [Z::Left, Z::Right, Z::FrontLeft, Z::FrontRight];
-    let zones = if other.zones.is_empty() { &usual[..] } else { &other.zones[..] };
+    let mut zones = if other.zones.is_empty() { usual.to_vec() } else { other.zones.clone() };
+    if told.layout.stood_open.is_some() {
+        let side = side_of(&other.zones);
+        zones.extend(side.map(|side| if side > 0.0 { Z::FrontLeft } else { Z::FrontRight }));
+    }
     zones.iter().flat_map(|zone| points(*zone).iter().copied()).collect()
 }
 

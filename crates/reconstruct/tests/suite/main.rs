@@ -9,6 +9,7 @@ mod between;
 #[allow(dead_code, reason = "the reader's own tests use the rest")]
 mod common;
 mod courses;
+mod doors;
 mod drives;
 mod earlier;
 mod in_step;

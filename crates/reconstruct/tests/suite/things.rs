@@ -16,6 +16,18 @@ const BEHIND_TWO: &str = "The AV was traveling north when it came to a stop behi
 
 const BUMP: &str = "The AV was traveling east when the underside of the AV made contact with a speed bump.";
 
+const PAVEMENT: &str =
+    "The AV was traveling east on Elm Street when the underside of the AV made contact with the pavement.";
+
+const COVER: &str =
+    "The AV was traveling east on Elm Street when the undercarriage of the AV scraped a steel drain cover.";
+
+const HOLE_IN_IT: &str =
+    "The AV was traveling east on Elm Street when the underside of the AV made contact with a pothole.";
+
+const HURLED: &str = "The AV was traveling east in the right lane when a piece of debris was propelled into the roadway and made contact with the front \
+                      right of the AV.";
+
 const TRIMMER: &str =
     "The AV was traveling east in a parking lot when the front left of the AV made contact with a string trimmer.";
 
@@ -124,6 +136,29 @@ fn a_speed_bump_lies_across_the_lane() {
     let (object, _, y_m) = thing(&shown);
     let size = object.size.expect("its size");
     assert!(size.width_m > 3.0 && size.length_m < 1.0 && y_m.abs() < 0.1, "{object:?}");
+}
+
+#[test]
+fn what_the_underside_scrapes_is_no_hole_under_a_wheel() {
+    let pavement = made(&story(PAVEMENT));
+    let (object, ..) = thing(&pavement);
+    assert!(object.kind == ObstacleKind::Kerb && object.size.is_some_and(|size| size.width_m > 3.0), "{object:?}");
+    let cover = made(&story(COVER));
+    let (object, _, y_m) = thing(&cover);
+    let ego = cover.rollout.ego_track().states[before_contact(&cover)];
+    assert!(object.kind == ObstacleKind::Pothole && (y_m - ego.y).abs() < 0.1, "{object:?}");
+    // A hole is under a wheel, whatever touched the road there.
+    let hole = made(&story(HOLE_IN_IT));
+    let (object, _, y_m) = thing(&hole);
+    let ego = hole.rollout.ego_track().states[before_contact(&hole)];
+    assert!(object.kind == ObstacleKind::Pothole && (y_m - ego.y).abs() > 0.3, "{object:?}");
+}
+
+#[test]
+fn what_was_hurled_into_the_road_by_nobody_comes_there() {
+    let shown = made(&story(HURLED));
+    assert!(shown.is_true(), "{:?}", shown.verdict);
+    assert!(shown.verdict.checks.iter().all(|check| check.kind != CheckKind::PassedOn));
 }
 
 #[test]

@@ -204,6 +204,9 @@ fn of_thing(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
     if let (true, Some(side)) = (rolls, zone_side(account)) {
         return Some(Fact::by_rule(Origin::Beside { side }, "what rolls comes from the side that it touches"));
     }
+    if let Some(flies) = flies_into(clues, account) {
+        return Some(flies);
+    }
     let lies = matches!(kind, Some(Kind::Debris | Kind::Pothole | Kind::Object | Kind::LooseWheel))
         && account.partner.as_ref()?.acts.is_empty();
     let on_road = forward(account)
@@ -222,6 +225,18 @@ fn of_thing(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
         ));
     }
     zone_side(account).map(|side| Fact::by_rule(Origin::Beside { side }, "the side that the thing touches"))
+}
+
+/// "the wheel bounced into its right side": from there.
+fn flies_into(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
+    const MOVES: [&str; 8] = ["roll", "bounc", "slid", "skid", "flew", "fly", "tumbl", "blew"];
+    let reading = clues.reading;
+    let frame = &reading.story.frames[reading.contacts.first?];
+    let verb = reading.story.tokens[frame.first].text.as_str();
+    let moves = frame.who == Some(clues.actor) && !frame.passive && MOVES.iter().any(|stem| verb.starts_with(stem));
+    let flank = account.sv.zones.iter().all(|zone| matches!(zone.value, Z::Left | Z::Right));
+    let side = zone_side(account).filter(|_| moves && flank)?;
+    Some(Fact { value: Origin::Beside { side }, source: reading.of(frame) })
 }
 
 /// Whether somebody is told to go the other way: its lanes are others.
