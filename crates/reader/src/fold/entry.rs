@@ -5,6 +5,7 @@ use super::Reading;
 use super::across::begins;
 use crate::chunk::is_determiner;
 use crate::frame::Frame;
+use crate::lexicon::{Form, Sense};
 use recrash_model::account::{Act, ActFact, Source};
 
 /// So many words stand between a verb and the intersection into which it leads, at most: "proceeded a short distance forward into the". [tokens]
@@ -147,16 +148,23 @@ fn in_a_lane(reading: &Reading<'_>, frame: &Frame) -> Option<usize> {
 }
 
 /// So many words stand between a stand and those for how much of it is in the lane, at most. [tokens]
-const TO_PARTLY: usize = 10;
+const TO_PARTLY: usize = 14;
 
-/// "was parked near the curb, partially in the right lane": the token behind it; not of who stands between two lanes.
+/// "was parked near the curb, partially in the right lane", "facing west at the kerb, partly in-lane": the token behind it; not of who stands
+/// between two lanes. One for bicycles beside it is none of them: "partly in the bike lane and partly in the right lane".
 fn partly_in_lane(reading: &Reading<'_>, frame: &Frame) -> Option<usize> {
     let sentence = reading.story.sentences[frame.sentence];
-    let next = reading.story.frames.iter().map(|other| other.first).filter(|first| *first >= frame.end).min();
-    let end = sentence.end.min(next.unwrap_or(sentence.end));
+    let faces = |other: &&Frame| other.sense == Sense::Face && other.form == Form::Ing;
+    let behind = reading.story.frames.iter().filter(|other| other.first >= frame.end && !faces(other));
+    let end = sentence.end.min(behind.map(|other| other.first).min().unwrap_or(sentence.end));
     let word = |at: usize| if at < end { reading.story.tokens[at].text.as_str() } else { "" };
     let partly = |at: &usize| matches!(word(*at), "partially" | "partly" | "partway" | "halfway");
+    let beside = |at: usize| {
+        let bikes = matches!(word(at + 3), "bike" | "bicycle" | "cycle") && word(at + 4) == "lane";
+        Some(at + 6).filter(|next| bikes && word(at + 5) == "and" && partly(next))
+    };
     let at = (frame.end..frame.end + TO_PARTLY).find(partly)?;
+    let at = beside(at).unwrap_or(at);
     let way = Some(at + 2).filter(|_| matches!(word(at + 1), "in" | "within"))?;
     let named = |at: &usize| {
         let word = word(*at);

@@ -62,8 +62,9 @@ pub(super) fn lane(
     let way = network.lane(id);
     let (s_m, t_m) = way.local(first.position());
     let against = math::wrap_angle(way.heading(s_m) - first.heading).abs() > math::FRAC_PI_2;
-    // Who is narrow may be anywhere in it.
-    let drives = track.kind != PartnerKind::FixedObject;
+    // Who is narrow may be anywhere in it, and so may who is told to stand partly in it.
+    let partly = ego.id == track.id && told.is_partly_in_lane();
+    let drives = track.kind != PartnerKind::FixedObject && !partly;
     let most_m = if drives { KEEPS_M.max(0.5 * (way.width_at(s_m) - track.width_m)) } else { way.width_at(s_m) };
     if word != LaneWord::Opposing && (against || t_m.abs() > most_m) {
         let how = if against { "against its direction" } else { "beside its middle" };
