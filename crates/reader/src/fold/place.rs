@@ -31,17 +31,18 @@ pub(crate) fn place(reading: &Reading<'_>) -> Place {
         for (kind, at, length) in lexicon.places(words) {
             // Somebody turns into it.
             let way_in = words.get(at + length).is_some_and(|next| WAYS_IN.contains(&next.text.as_str()));
-            // "exited a garage", "turned into a garage": there it came from, or went to.
+            // "exited a garage", "turned into a garage", "came to the exit of a garage": there it came from, or went to.
             let way_out = at > 0
                 && words[at.saturating_sub(4)..at].iter().any(|before| {
                     matches!(
                         before.text.as_str(),
-                        "exited" | "exiting" | "leaving" | "into" | "out" | "enter" | "entered"
+                        "exited" | "exiting" | "exit" | "leaving" | "into" | "out" | "enter" | "entered" | "entrance"
                     )
                 });
             let aside = way_in || way_out && kind == PlaceKind::Garage;
-            // "A van traveling in an alley pulled out", told of one that drives along a street.
-            let of_other = kind == PlaceKind::Alley && is_told_of_another(reading, number, sentence.first + at);
+            // "A van traveling in an alley pulled out", "a van driving through a garage", told of one that drives along a street.
+            let of_other = matches!(kind, PlaceKind::Alley | PlaceKind::Garage)
+                && is_told_of_another(reading, number, sentence.first + at);
             if place.kind.is_none()
                 && !(of_other && column_is_road(reading))
                 && !(aside && matches!(kind, PlaceKind::Garage | PlaceKind::ParkingLot))

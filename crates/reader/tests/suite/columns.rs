@@ -3,7 +3,7 @@
 use crate::common::{self, facts};
 use recrash_model::kinds::PartnerKind;
 use recrash_model::record::{Coded, CrashRecord};
-use recrash_model::template::Movement;
+use recrash_model::template::{Movement, RoadType};
 use recrash_model::zones::ContactZone as Z;
 use std::collections::BTreeMap;
 
@@ -254,4 +254,20 @@ fn who_was_giving_way_and_moves_by_the_column_was_slowing() {
     };
     assert_eq!(acts(Movement::Straight), "slow");
     assert_eq!(acts(Movement::Stopped), "");
+}
+
+#[test]
+fn a_garage_in_which_another_drove_is_not_the_place() {
+    let place = |words: &str| {
+        let text = format!(
+            "The AV was heading south on Elm Street. {words} The nose of the coupe hit the AV's left rear door."
+        );
+        beside(&text, |record| record.road = Coded::Known(RoadType::Street)).remove("place").unwrap_or_default()
+    };
+    assert_eq!(
+        place("A coupe driving east in a parking garage left the garage and turned into the AV's lane."),
+        "street"
+    );
+    assert_eq!(place("A coupe that was going through a parking structure shot out into the AV's lane."), "street");
+    assert_eq!(place("The AV was driving in a parking garage when a coupe came around the corner."), "garage");
 }

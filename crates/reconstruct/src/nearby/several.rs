@@ -6,6 +6,7 @@ use crate::ground::pieces::corner_m;
 use crate::nearby::hinders::{CLEAR_M, hinders_nobody};
 use crate::nearby::scene::Scene;
 use crate::told::others::{Extra, Role};
+use recrash_model::account::LeftRight;
 use recrash_model::geometry::Vec2;
 use recrash_model::kinds::PartnerKind;
 use recrash_model::rollout::Rollout;
@@ -32,8 +33,8 @@ impl Scene<'_> {
         let id = extra.id();
         let actor = draft.actors.iter().find(|actor| actor.id == id).filter(|_| extra.several)?;
         let second_id = second_id(extra, draft)?;
-        let place = |by: Vec2| {
-            let second = Actor { id: second_id.clone(), plan: shifted(&actor.plan, by)?, ..actor.clone() };
+        let place = |plan: ActorPlan| {
+            let second = Actor { id: second_id.clone(), plan, ..actor.clone() };
             if self.is_in_junction(extra, &second) {
                 return None;
             }
@@ -47,7 +48,20 @@ impl Scene<'_> {
             (hinders_nobody(&second.id, &scenario, (rollout, &driven)) && seen.holds(extra))
                 .then(|| (scenario.draft().clone(), driven))
         };
-        offsets(actor)?.into_iter().find_map(place)
+        let other_side = self.at_other_kerb(extra, draft, actor);
+        let beside = offsets(actor)?.into_iter().filter_map(|by| shifted(&actor.plan, by));
+        other_side.into_iter().chain(beside).find_map(place)
+    }
+
+    /// "vehicles parked at both curbs": where one stands at one kerb alone, the second is at the other one first.
+    fn at_other_kerb(&self, extra: &Extra, draft: &ScenarioDraft, actor: &Actor) -> Vec<ActorPlan> {
+        let alone = draft.actors.iter().filter(|other| other.id.starts_with(Role::Kerb.id())).count() == 1;
+        let Some(at) = point(&actor.plan.start).filter(|_| alone && extra.role == Role::Kerb && extra.side.is_none())
+        else {
+            return Vec::new();
+        };
+        let side = if self.ground.beside(at).1 > 0.0 { LeftRight::Left } else { LeftRight::Right };
+        self.kerb(side, 0.5 * length_m(actor)).iter().map(|way| way.plan(self.contact_s)).collect()
     }
 
     /// Whether somebody who stands along the ego's road would stand in the junction.

@@ -394,6 +394,8 @@ impl Story<'_> {
             let blocks = near && (waits || double) || named_before;
             let round = goes_round(told) && told.thing.is_none_or(|thing| thing != other.kind.value);
             return match (other.several, round && !self.keeps_to_kerb(told, other, place)) {
+                // A row of them that is double-parked in the lane towards the ego is at no kerb.
+                (true, _) if double && place == Some(Origin::Opposite) => None,
                 (true, _) => Some(Role::Kerb),
                 (false, true) => Some(Role::Obstacle),
                 (false, false) if blocks => Some(Role::Lead),

@@ -160,3 +160,28 @@ fn who_is_told_to_be_parked_against_the_egos_way_does_not_face_as_it_does() {
     let against = recrash_model::math::wrap_angle(facing).abs() > 2.0;
     assert!((against && lanes(&made)[1] > 0) || made.missed().is_some(), "{:?}", made.verdict);
 }
+
+const BOTH_KERBS: &str = "The AV was traveling north on a narrow stretch of Elm Street with vehicles parked at the curb in both directions when it moved to \
+                          the right and stopped to let a southbound box truck by. The box truck proceeded to pass the AV on the left, and the left side of \
+                          the box truck made contact with the rear left side of the stationary AV.";
+
+#[test]
+fn vehicles_parked_at_both_kerbs_stand_at_both() {
+    let made = made(&story(BOTH_KERBS));
+    assert!(made.is_true(), "{:?}", made.verdict);
+    let middle = made.rollout.ego_track().states[0].y;
+    let kerbs = made.rollout.actors.iter().filter(|track| track.id.starts_with("kerb"));
+    let sides: Vec<bool> = kerbs.map(|track| track.states[0].y > middle).collect();
+    assert!(sides.contains(&true) && sides.contains(&false), "{sides:?}");
+}
+
+const DOUBLE_PARKED: &str = "The AV was traveling north on Elm Street and came to a stop as southbound traffic went around double-parked vans in the \
+                             southbound lane. A sedan behind the AV passed the AV on the left, and the right side of the sedan made contact with the \
+                             rear left side of the stationary AV.";
+
+#[test]
+fn a_row_that_is_double_parked_in_the_opposite_lane_is_at_no_kerb() {
+    let made = made(&story(DOUBLE_PARKED));
+    assert!(made.is_true(), "{:?}", made.verdict);
+    assert!(made.rollout.actors.iter().all(|track| !track.id.starts_with("kerb")), "{:?}", made.draft.actors);
+}

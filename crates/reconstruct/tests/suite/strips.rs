@@ -175,6 +175,13 @@ fn who_is_parked_partly_in_the_lane_stands_on_its_edge() {
     };
     let (partly, wholly) = (beside_m(text), beside_m(&text.replace("partially in-lane at", "at")));
     assert!((0.8..2.0).contains(&partly) && wholly > partly + 1.0, "{partly} m, {wholly} m");
+    let faces = text.replace(
+        "partially in-lane at the curb facing north on Elm Street",
+        "facing north on Elm Street, partially in the right lane",
+    );
+    let shown = made(&story(&faces));
+    let lane = shown.verdict.checks.iter().find(|check| check.kind == CheckKind::SvLane).expect("a told lane");
+    assert_eq!((lane.result, beside_m(&faces) < 2.0), (CheckResult::Shown, true), "{lane:?}");
 }
 
 #[test]
