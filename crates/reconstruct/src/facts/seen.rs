@@ -28,6 +28,9 @@ const LATE_STEPS: usize = 30;
 /// Who stays close to the ego is no farther from its way when the two touch. [m]
 const CLOSE_M: f64 = 4.0;
 
+/// Who stands partly in the lane has its middle so far out of that of the ego. [m]
+const PARTLY_OUT_M: f64 = 0.5;
+
 /// Who is parked beside the way is no farther off, ahead or behind. [m]
 const PARKED_M: f64 = 40.0;
 
@@ -237,7 +240,8 @@ impl<'a> Seen<'a> {
             () => 0.0,
         };
         let within_m = AHEAD_M + 0.5 * track.length_m + self.stopping_m(from) + queue_m;
-        let there = ahead_m > 0.0 && math::hypot(ahead_m, left_m) < within_m && left_m.abs() < LANE_M;
+        let partly = !extra.partly || left_m.abs() > PARTLY_OUT_M;
+        let there = ahead_m > 0.0 && math::hypot(ahead_m, left_m) < within_m && left_m.abs() < LANE_M && partly;
         let stood = Self::mps(track, from) < STANDS_MPS;
         let goes = (from..=self.until).find(|step| Self::mps(track, *step) > 2.0 * STANDS_MPS);
         let ego_goes = to + 1 < self.until && self.gives_way(from);
@@ -272,7 +276,9 @@ impl<'a> Seen<'a> {
 
     /// Whether somebody passes ahead of the ego, from one side of it to the other, while it stands or slows before the contact.
     fn crosses(&self, extra: &Extra, track: &ActorTrack, within_m: f64) -> bool {
-        let last = self.until.min(track.states.len() - 1);
+        // Who had gone by did so while the ego stood first.
+        let set_off = extra.early.then(|| stands(self.ego, self.until).first().map(|(_, to)| *to)).flatten();
+        let last = set_off.unwrap_or(self.until).min(track.states.len() - 1);
         (self.first_step(extra)..=last).any(|step| {
             let ((ahead_m, left_m), (_, before_m)) = (self.beside(track, step), self.beside(track, step - 1));
             let near = (0.0..within_m + self.stopping_m(step)).contains(&ahead_m);

@@ -28,9 +28,12 @@ const GOES_MPS2: f64 = 1.5;
 const MERGES_MPS: f64 = 5.0;
 const MERGES_S: f64 = 3.5;
 
-/// Who is on its way into a space at the kerb is so far out of the lane, and at such an angle. [m, rad]
+/// Who is on its way into a space at the kerb is so far out of the lane, with its rear to the kerb. [m, rad]
 const HALF_PARKED_M: f64 = 1.5;
 const HALF_PARKED_RAD: f64 = 0.4;
+
+/// Who stands partly in the lane is so far out of it. [m]
+const PARTLY_OUT_M: f64 = 1.1;
 
 /// Who backs out of a space does so over this way, to where its rear is so far from the middle of the ego's lane. [m, m/s, m/s^2]
 const BACKS_OUT_M: f64 = 4.0;
@@ -63,7 +66,11 @@ impl Scene<'_> {
             None if at_kerb => self.ground.pose(s_m + ahead_m, 0.0),
             None => self.ahead(step, ahead_m),
         };
-        let pose = if extra.parks { self.half_parked(pose) } else { pose };
+        let pose = match (extra.parks, extra.partly) {
+            (true, _) => Self::moved_right(pose, HALF_PARKED_M, HALF_PARKED_RAD),
+            (false, true) => Self::moved_right(pose, PARTLY_OUT_M, 0.0),
+            (false, false) => pose,
+        };
         // Before the light.
         let controlled = self.told.sv.control.is_some_and(|said| said.device == ControlDevice::Signal);
         let line_m = self.ground.first_m();
@@ -93,10 +100,10 @@ impl Scene<'_> {
         Some(ActorPlan { course, acts, ..ActorPlan::standing(at(begins_m)) })
     }
 
-    /// Half out of the lane, with its rear to the kerb on the right.
-    fn half_parked(&self, pose: Pose) -> Pose {
-        let right = Vec2::from_heading(pose.heading).left() * -HALF_PARKED_M;
-        Pose { position: pose.position + right, heading: pose.heading + HALF_PARKED_RAD }
+    /// So far out of the lane, towards the kerb on the right, and turned so.
+    fn moved_right(pose: Pose, by_m: f64, turned: f64) -> Pose {
+        let right = Vec2::from_heading(pose.heading).left() * -by_m;
+        Pose { position: pose.position + right, heading: pose.heading + turned }
     }
 
     /// From the ego to the front of a partner that stands in the queue ahead of it, or beside it at the kerb. [m]
