@@ -524,6 +524,7 @@ fn others(reading: &Reading<'_>) -> Vec<Other> {
             || acts.is_empty() && nobody::is_named_before(reading, actor, kind)
             || nobody::is_one_of_the_two(reading, (actor, kind), (first, end), &acts)
             || nobody::is_remark(reading, (first, end), &acts)
+            || nobody::is_one_of_those(known, &acts)
             || known.mentions == 1 && nobody::is_denied(reading, first);
         if !touched_partner && nobody {
             continue;
@@ -534,7 +535,7 @@ fn others(reading: &Reading<'_>) -> Vec<Other> {
             kind: reading.told(kind, first, end),
             place: whereabouts::place_of(reading, actor),
             several: known.several,
-            acts: acts::stood_alongside(reading, actor, acts),
+            acts: nominal::waits_to_cross(reading, actor, acts::stood_alongside(reading, actor, acts)),
             astride: astride::astride(reading, actor),
             touched_partner,
             touch: touch.and_then(|frame| touched::earlier(reading, frame)),

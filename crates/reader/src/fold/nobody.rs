@@ -50,6 +50,11 @@ pub(super) fn is_one_of_the_two(
         || is_thing_again(reading, kind, end, another)
 }
 
+/// "Officers were directing traffic. A van set off when one of the officers waved": one of those told of before, of whom no more is told.
+pub(super) fn is_one_of_those(known: &Known, acts: &[ActFact]) -> bool {
+    known.group.is_some() && acts.iter().all(|fact| fact.after_contact)
+}
+
 /// Whether the headline counts both vehicles beside the subject vehicle.
 fn known_as_two(reading: &Reading<'_>, actor: Actor, (first, _): (usize, usize)) -> bool {
     let story = &reading.story;

@@ -1,14 +1,51 @@
-//! The turn that no verb tells: "was stopped in the slip lane".
+//! What no verb of its own tells: a turn ("was stopped in the slip lane"), and that somebody on foot waits ("a man at the corner").
 
 use super::Reading;
 use crate::frame::Frame;
 use crate::lexicon::{Lexicon, Meaning, Sense};
 use crate::world::{Actor, SUBJECT};
-use recrash_model::account::{Act, ActFact, LeftRight};
+use recrash_model::account::{Act, ActFact, KindGroup, LeftRight};
 use std::ops::Range;
 
 /// The road to which a slip lane leads is named within so many words behind it. [tokens]
 const ROAD_WITHIN: usize = 12;
+
+/// Where somebody on foot waits, and for what, is said within so many words behind its name. [tokens]
+const KERB_WITHIN: usize = 6;
+
+/// "Yielded to two students at the north kerb", "to a boy about to cross": of whom no more is told, who stands there.
+pub(super) fn waits_to_cross(reading: &Reading<'_>, actor: Actor, mut acts: Vec<ActFact>) -> Vec<ActFact> {
+    let story = &reading.story;
+    let known = &story.world.actors[actor];
+    let Some((first, end)) = known.kind_tokens.filter(|_| acts.is_empty()) else { return acts };
+    if known.kind.is_none_or(|kind| kind.group() != KindGroup::OnFoot) {
+        return acts;
+    }
+    let word = |at: usize| story.tokens.get(at).map_or("", |token| token.text.as_str());
+    let ends = |at: &usize| !matches!(word(*at), "" | "." | "," | ";" | "and" | "while" | "when" | "as");
+    let told = (end..end + KERB_WITHIN).take_while(ends);
+    let at_kerb = matches!(word(end), "at" | "on" | "near" | "by" | "beside")
+        .then(|| told.clone().find(|at| matches!(word(*at), "curb" | "kerb" | "corner" | "curbside" | "kerbside")));
+    let waits = matches!(word(end), "preparing" | "about" | "intending" | "ready" | "poised" | "looking" | "wanting");
+    let to_cross = (waits && word(end + 1) == "to")
+        .then(|| told.clone().find(|at| matches!(word(*at), "cross" | "step" | "walk" | "enter")));
+    let Some(last) = at_kerb.flatten().or(to_cross.flatten()) else { return acts };
+    let step = story.frames.iter().rposition(|frame| frame.first <= first).unwrap_or(0) as u32;
+    let (after_contact, done, after_other, manner) = (false, false, None, None);
+    let source = reading.words(end, last + 1);
+    acts.push(ActFact {
+        act: Act::Hold,
+        side: None,
+        step,
+        after_contact,
+        begun: false,
+        done,
+        after_other,
+        manner,
+        source,
+    });
+    acts
+}
 
 /// Whether somebody is told to have been in a turn, by no verb.
 pub(super) fn is_in_turn(reading: &Reading<'_>, actor: Actor) -> bool {

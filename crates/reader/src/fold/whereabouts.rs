@@ -25,7 +25,9 @@ pub(crate) fn place_of(reading: &Reading<'_>, actor: Actor) -> Option<Fact<Origi
     });
     let value = relation.and_then(origin_of);
     let told = value.zip(relation).map(|(value, relation)| Fact { value, source: clues.has(relation) });
-    told.or_else(|| behind_partner(reading, actor))
+    comes_along_its_road(&clues, value)
+        .or(told)
+        .or_else(|| behind_partner(reading, actor))
         .or_else(|| in_queue(&clues))
         .or_else(|| in_that_queue(&clues))
         .or_else(|| in_other_lane(&clues))
@@ -333,8 +335,11 @@ fn behind_partner(reading: &Reading<'_>, actor: Actor) -> Option<Fact<Origin>> {
 /// The queue in which the subject vehicle stands is ahead of it.
 fn in_queue(clues: &Clues<'_>) -> Option<Fact<Origin>> {
     let (from, end) = queue_of(clues.reading, clues.actor)?;
-    let held = held_in(clues.reading, SUBJECT, from, end);
-    held.then(|| clues.reading.told(Origin::Ahead, from, end))
+    let reading = clues.reading;
+    // "yielding to a line of cars".
+    let yields = |(_, frame): (usize, &Frame)| frame.sense == Sense::Yield && frame.object == Some(clues.actor);
+    let held = held_in(reading, SUBJECT, from, end) || reading.before(SUBJECT).any(yields);
+    held.then(|| reading.told(Origin::Ahead, from, end))
 }
 
 /// The tokens of somebody who is called a queue: "a queue of traffic".
@@ -422,6 +427,23 @@ fn by_directions(clues: &Clues<'_>) -> Option<Fact<Origin>> {
     let actors = &clues.reading.story.world.actors;
     let ((own, ..), (other, first, end)) = (actors[SUBJECT].heading?, actors[clues.actor].heading?);
     Some(clues.reading.told(met_from(own, other)?, first, end))
+}
+
+/// "A van going west in the next lane cut in", of one that goes east: the lane is next to that of another who goes west. "A group of
+/// cyclists came south towards it" meets who goes west from its right.
+fn comes_along_its_road(clues: &Clues<'_>, place: Option<Origin>) -> Option<Fact<Origin>> {
+    let (reading, actor) = (clues.reading, clues.actor);
+    let fact = by_directions(clues)?;
+    let turned = reading.did(SUBJECT, Act::Turn) || reading.did(SUBJECT, Act::UTurn);
+    let stands = |frame: &Frame| matches!(frame.act(), Some(Act::Hold | Act::Park | Act::Reverse));
+    let drives = reading.before(actor).any(|(_, frame)| frame.act() == Some(Act::Follow))
+        && !reading.before(actor).any(|(_, frame)| stands(frame));
+    let is_other_road = match place? {
+        Origin::Beside { .. } => fact.value == Origin::Opposite && !turned,
+        Origin::Opposite => matches!(fact.value, Origin::Cross { .. }),
+        _ => false,
+    };
+    (drives && is_other_road).then_some(fact)
 }
 
 /// From where somebody with this direction meets one with another.

@@ -82,8 +82,9 @@ impl Near {
             First::Came => state(0).position().distance(state(until).position()) > DROVE_M,
             First::Left => seen(until).1.abs() > 0.5 * LANE_M || seen(until).0 < -half_m,
         };
-        // Who waits opposite, or slows there, has not long gone by when the two touch.
-        let waits = self.place == Some(Origin::Opposite) && matches!(self.does, Does::Slows | Does::Stands);
+        // Who waits opposite, slows there, or goes aside, has not long gone by when the two touch.
+        let waits = matches!(self.does, Does::Slows | Does::Stands | Does::GoesAside(_));
+        let waits = self.place == Some(Origin::Opposite) && waits;
         let waits_yet = !waits || seen(until).0 > -half_m - GONE_BY_M;
         let drove = state(0).position().distance(state(until).position()) > DROVE_M;
         // To the left of where it was at first, along the road.

@@ -272,7 +272,9 @@ impl<'a> Seen<'a> {
 
     /// Whether somebody passes ahead of the ego, from one side of it to the other, while it stands or slows before the contact.
     fn crosses(&self, extra: &Extra, track: &ActorTrack, within_m: f64) -> bool {
-        let last = self.until.min(track.states.len() - 1);
+        // Who had gone by did so while the ego stood first.
+        let set_off = extra.early.then(|| stands(self.ego, self.until).first().map(|(_, to)| *to)).flatten();
+        let last = set_off.unwrap_or(self.until).min(track.states.len() - 1);
         (self.first_step(extra)..=last).any(|step| {
             let ((ahead_m, left_m), (_, before_m)) = (self.beside(track, step), self.beside(track, step - 1));
             let near = (0.0..within_m + self.stopping_m(step)).contains(&ahead_m);

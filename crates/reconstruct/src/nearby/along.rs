@@ -114,13 +114,19 @@ impl<'a> Scene<'a> {
         let own_m = self.told.sv_aside().map_or(0.0, |aside| aside.from_t_m);
         let mut lines = self.lines();
         lines.sort_by_key(|t_m| *t_m != own_m);
-        let places = far.flat_map(|on_m| lines.clone().into_iter().map(move |t_m| (front_m + on_m, t_m)));
+        let mut places: Vec<(f64, f64)> =
+            far.flat_map(|on_m| lines.clone().into_iter().map(move |t_m| (front_m + on_m, t_m))).collect();
+        // Ahead of a partner that is in that lane itself.
+        if self.told.origin == Origin::Ahead {
+            places.sort_by_key(|(_, t_m)| *t_m != own_m);
+        }
         let across_m = self.ground.first_m() + 2.0 * corner_m(self.ground.lanes) + half_m;
         let inside = |s_m: f64| self.ground.junction && s_m + half_m > self.ground.first_m() && s_m < across_m;
         let beyond = self.ground.junction.then(|| Way::stands(self.road(across_m + 1.0, 0.0)));
         let stands = |(s_m, t_m): (f64, f64)| Way::stands(self.road(s_m, t_m));
         let ahead = self.stands_ahead_of_partner(half_m);
-        ahead.into_iter().chain(places.filter(|(s_m, _)| !inside(*s_m)).map(stands)).chain(beyond).collect()
+        let places = places.into_iter().filter(|(s_m, _)| !inside(*s_m)).map(stands);
+        ahead.into_iter().chain(places).chain(beyond).collect()
     }
 
     /// Behind the ego: it follows one that drives, comes along and stands, or stands where the ego does from the start.

@@ -64,10 +64,10 @@ impl Scene<'_> {
         self.kerb(side, 0.5 * length_m(actor)).iter().map(|way| way.plan(self.contact_s)).collect()
     }
 
-    /// Whether somebody who stands along the ego's road would stand in the junction.
+    /// Whether a vehicle that stands along the ego's road would stand in the junction.
     fn is_in_junction(&self, extra: &Extra, actor: &Actor) -> bool {
         let Some(at) = point(&actor.plan.start) else { return true };
-        let stands = actor.plan.speed_mps == 0.0 && !matches!(extra.role, Role::Blocker | Role::Beyond);
+        let stands = actor.plan.speed_mps == 0.0 && !matches!(extra.role, Role::Blocker | Role::Beyond | Role::Walker);
         let (s_m, _) = self.ground.beside(at);
         let half_m = 0.5 * length_m(actor);
         let ends_m = self.ground.first_m() + 2.0 * corner_m(self.ground.lanes);

@@ -22,7 +22,14 @@ pub(crate) fn actors(told: &Told, staging: &Staging, recorded: &ActorPlan, alone
     let scene = Scene { told, ground: &staging.ground, recorded, ego, partner, until, stand };
     // For whom it slowed on its way it did not stand.
     let on_way = Scene { stand: None, ..scene };
-    told.extras.iter().flat_map(|extra| if extra.late { &on_way } else { &scene }.actors(extra)).collect()
+    // Who had gone by crossed before an ego that stood set off first.
+    let at_first = Scene { stand: stands(ego, until).first().copied(), ..scene };
+    let of = |extra: &Extra| match (extra.late, extra.early) {
+        (true, _) => on_way,
+        (false, true) => at_first,
+        (false, false) => scene,
+    };
+    told.extras.iter().flat_map(|extra| of(extra).actors(extra)).collect()
 }
 
 impl Scene<'_> {
@@ -57,7 +64,7 @@ impl Scene<'_> {
         };
         let name = |number: usize| if number == 0 { String::new() } else { format!("-{}", number + 1) };
         let actor = |(number, plan): (usize, ActorPlan)| Actor {
-            id: extra.role.id().to_owned() + &name(number),
+            id: extra.id() + &name(number),
             kind,
             size,
             mass_kg: None,

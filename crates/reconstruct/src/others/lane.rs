@@ -29,7 +29,7 @@ const GOES_MPS2: f64 = 1.5;
 const MERGES_MPS: f64 = 5.0;
 const MERGES_S: f64 = 3.5;
 
-/// Who is on its way into a space at the kerb is so far out of the lane, and at such an angle. [m, rad]
+/// Who is on its way into a space at the kerb is so far out of the lane, with its rear to the kerb. [m, rad]
 const HALF_PARKED_M: f64 = 1.5;
 const HALF_PARKED_RAD: f64 = 0.4;
 

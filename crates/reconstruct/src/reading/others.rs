@@ -1,6 +1,8 @@
 //! Others than the two: who is told of besides them, and why the ego stood.
 
-use crate::reading::story::{Story, is_at_junction, is_parked, lets_in_at_green};
+use crate::reading::story::{
+    Story, has_siren, is_at_junction, is_parked, lets_in_at_green, stays_close,
+};
 use crate::reading::words::{before_contact, span, text};
 use crate::told::crash::Told;
 use crate::told::near::Near;
@@ -93,7 +95,7 @@ pub(super) fn wanted(told: &Told, account: &Account) -> Vec<Extra> {
         let near = |list: &[Extra]| {
             let before = list.iter().filter(|extra| extra.role == Role::Near).count();
             let near = Near::of(other, &text(&other.kind.source), before).filter(|_| !other.touched_partner);
-            let (awaited, several) = (story.is_near(other), other.several);
+            let (awaited, several) = (story.is_near(other) || story.comes_with_siren(other), other.several);
             let after_turn = story.is_after_turn(told, other);
             let near = near.map(|near| Near { after_turn, ..near });
             let near = near.map(|near| if told.dropped == Some(number) { near.ahead() } else { near });
@@ -118,7 +120,8 @@ pub(super) fn wanted(told: &Told, account: &Account) -> Vec<Extra> {
         // Of whom no deed is told where the ego slows for it again, it has moved up as that did.
         let moves_up = (late || story.is_placed_as_it_slows(told, other)) && before_contact(other).next().is_none();
         let again = role == Role::Lead && (story.stands_again(other) || moves_up);
-        match list.iter_mut().find(|extra| extra.role == role) {
+        let stays = role == Role::Walker && stays_close(other);
+        match list.iter_mut().find(|extra| extra.role == role && extra.stays == stays) {
             Some(known)
                 if kind.partner_kind().is_none_or(|kind| known.kind.partner_kind() == Some(kind))
                     || is_of_queue(known, other) =>
@@ -141,7 +144,6 @@ pub(super) fn wanted(told: &Told, account: &Account) -> Vec<Extra> {
                 let between = role == Role::Beside && story.is_between(told, other);
                 let parks = role == Role::Lead && is_parking(other);
                 let passed = role == Role::Kerb && story.goes_by(told, other);
-                let stays = role == Role::Walker && stays_close(other);
                 list.push(Extra {
                     of: vec![number],
                     kind,
@@ -151,6 +153,7 @@ pub(super) fn wanted(told: &Told, account: &Account) -> Vec<Extra> {
                     first,
                     again,
                     late,
+                    early: role == Role::Crosser && story.is_gone_before(other),
                     awaited,
                     behind,
                     between,
@@ -180,8 +183,7 @@ fn is_parking(other: &Other) -> bool {
 
 /// Whether somebody with a siren is told of without a place or a deed: it is nobody who stands ahead.
 fn is_heard(other: &Other) -> bool {
-    let siren = matches!(other.kind.value, Kind::PoliceCar | Kind::Ambulance | Kind::FireTruck | Kind::FirstResponder);
-    siren && other.place.is_none() && before_contact(other).next().is_none()
+    has_siren(other) && other.place.is_none() && before_contact(other).next().is_none()
 }
 
 /// Whether somebody who is told ahead is the nearest of traffic that stands there, which may be of any kind.
@@ -213,7 +215,7 @@ fn for_reasons(story: &Story<'_>, told: &Told, list: &mut Vec<Extra>) {
         list.push(Extra { kind, ..Extra::of_reason(Role::Thing) });
     }
     // It gave way, and nobody says to whom.
-    let named = story.account.others.iter().any(|other| story.is_near(other));
+    let named = story.account.others.iter().any(|other| story.is_near(other) || story.comes_with_siren(other));
     let named = named || list.iter().any(|extra| GIVEN_WAY.contains(&extra.role));
     let role = if is_at_junction(told) { Role::Crosser } else { Role::Oncoming };
     if told.reasons.contains(&StandReason::Yield) && !named && is_drawn(told, role) {
@@ -242,12 +244,6 @@ fn thing_in_way(account: &Account) -> Option<Kind> {
     let reason = account.sv.reasons.iter().find(|fact| fact.value == StandReason::BlockedPath)?;
     let words = text(&reason.source);
     THINGS.iter().find(|(word, _)| words.contains(word)).map(|(_, kind)| *kind)
-}
-
-/// Whether who is on foot is told last to stand or to stay, and not to have crossed.
-fn stays_close(other: &Other) -> bool {
-    let crosses = before_contact(other).any(|fact| fact.act == Act::Cross);
-    !crosses && before_contact(other).last().is_some_and(|fact| matches!(fact.act, Act::Hold | Act::Stop))
 }
 
 /// Who of the others is told over a line of the road.

@@ -8,8 +8,8 @@ use crate::told::queue::sets_off;
 use crate::told::side::Turning;
 use crate::told::zones::side_of;
 use recrash_model::account::{
-    Account, Act, ActFact, ContactState, ControlDevice, KindGroup, LeftRight, Origin, Other, PlaceKind, SignalState,
-    Source, StandReason,
+    Account, Act, ActFact, ContactState, ControlDevice, Kind, KindGroup, LeftRight, Origin, Other, PlaceKind,
+    SignalState, Source, StandReason,
 };
 use recrash_model::template::Movement;
 
@@ -27,6 +27,17 @@ const BLOCKS_WITHIN: usize = 16;
 /// Whether somebody is told to be parked.
 pub(super) fn is_parked(other: &Other) -> bool {
     text(&other.kind.source).contains("parked") || before_contact(other).any(|fact| text(&fact.source).contains("park"))
+}
+
+/// Whether somebody has a siren.
+pub(super) fn has_siren(other: &Other) -> bool {
+    matches!(other.kind.value, Kind::PoliceCar | Kind::Ambulance | Kind::FireTruck | Kind::FirstResponder)
+}
+
+/// Whether who is on foot is told last to stand or to stay, and not to have crossed.
+pub(super) fn stays_close(other: &Other) -> bool {
+    let crosses = before_contact(other).any(|fact| fact.act == Act::Cross);
+    !crosses && before_contact(other).last().is_some_and(|fact| matches!(fact.act, Act::Hold | Act::Stop))
 }
 
 /// Whether somebody in the lane beside the ego changes lanes towards it: "a car in the lane to its right changed lanes to the left".
@@ -148,6 +159,27 @@ impl Story<'_> {
         both.is_some_and(|((start, end), (first, last))| first <= start && end <= last)
     }
 
+    /// Whether somebody with a siren comes along another way, and is named before the words that the ego stood for it.
+    pub(super) fn comes_with_siren(&self, other: &Other) -> bool {
+        let comes =
+            matches!(other.place.as_ref().map(|fact| fact.value), Some(Origin::Cross { .. } | Origin::Opposite));
+        has_siren(other) && comes && self.is_named_before(other)
+    }
+
+    /// Whether traffic is named before the ego, which stood, set off, and that stands again for something else: "after cross traffic
+    /// cleared, it entered the intersection and stopped for a woman".
+    pub(super) fn is_gone_before(&self, other: &Other) -> bool {
+        let ego = || self.account.sv.acts.iter().filter(|fact| !fact.after_contact);
+        let goes = |fact: &&ActFact| matches!(fact.act, Act::SetOff | Act::Enter | Act::Follow);
+        let stood = ego().find(|fact| matches!(fact.act, Act::Hold | Act::Stop)).map(|fact| fact.step);
+        let Some(stood) = stood else { return false };
+        let Some(off) = ego().filter(goes).find(|fact| fact.step > stood) else { return false };
+        let again = ego().any(|fact| fact.step > off.step && matches!(fact.act, Act::Slow | Act::Stop | Act::Hold));
+        let named = span(&other.kind.source).zip(span(&off.source));
+        let between = named.is_some_and(|((_, end), (off, _))| end <= off && off < end + NAMED_WITHIN);
+        again && between && !self.is_near(other) && before_contact(other).next().is_none()
+    }
+
     /// Whether somebody on foot, or an animal, is whom the ego slowed or stood for.
     pub(super) fn is_met(&self, other: &Other) -> bool {
         let Some((named, _)) = span(&other.kind.source) else { return false };
@@ -225,6 +257,12 @@ impl Story<'_> {
             // Who rides into the ego's lane from beside is in it.
             KindGroup::Cyclist if before_contact(other).any(|fact| fact.act == Act::LaneChange) => {
                 self.vehicle(told, other)
+            }
+            // Who stays at the side of an ego that drives on, and for whom it did nothing, is near alone.
+            KindGroup::OnFoot
+                if told.sv.state == ContactState::Moving && stays_close(other) && !self.is_near(other) =>
+            {
+                None
             }
             KindGroup::OnFoot | KindGroup::Cyclist => self.is_met(other).then_some(Role::Walker),
             KindGroup::Animal => self.is_met(other).then_some(Role::Animal),

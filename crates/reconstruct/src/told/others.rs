@@ -114,6 +114,8 @@ pub(crate) struct Extra {
     pub(crate) again: bool,
     /// The ego, which had stood and drove on, slowed for it.
     pub(crate) late: bool,
+    /// It had gone by before the ego, which stood and stops again, set off first.
+    pub(crate) early: bool,
     /// The ego stands or slows for it, or it is not told that somebody else is the reason.
     pub(crate) awaited: bool,
     /// The ego has gone round it, and is back in its lane.
@@ -149,6 +151,7 @@ impl Extra {
             first: false,
             again: false,
             late: false,
+            early: false,
             awaited: true,
             behind: false,
             passed: false,
@@ -175,7 +178,11 @@ impl Extra {
 
     /// The name of its actor.
     pub(crate) fn id(&self) -> String {
-        self.near.map_or_else(|| self.role.id().to_owned(), Near::id)
+        match self.near {
+            Some(near) => near.id(),
+            None if self.stays => "bystander".to_owned(),
+            None => self.role.id().to_owned(),
+        }
     }
 
     /// Whether it has no part in what the ego does, and is on a road that crosses the ego's, or turns into one.

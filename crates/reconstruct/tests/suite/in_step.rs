@@ -104,7 +104,7 @@ fn who_stays_close_does_not_cross() {
     let shown = made(&account);
     assert!(fact(&shown, CheckKind::Others).expected.contains("stays close"), "{:?}", account.others);
     assert_eq!(fact(&shown, CheckKind::Others).result, CheckResult::Shown, "{:?}", shown.verdict);
-    let (walker, ego) = (track(&shown, "walker"), shown.rollout.ego_track());
+    let (walker, ego) = (track(&shown, "bystander"), shown.rollout.ego_track());
     let last = before_contact(&shown);
     assert!(walker.kind == PartnerKind::Pedestrian && walker.states[last].speed() < 0.1);
     let aside_m = walker.states[last].y - ego.states[last].y;

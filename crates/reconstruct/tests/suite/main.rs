@@ -33,5 +33,6 @@ mod strips;
 mod sweeps;
 mod task;
 mod things;
+mod third_users;
 mod ways;
 mod who_was_first;
