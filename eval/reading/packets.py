@@ -121,7 +121,7 @@ def on_strip(road: dict, junctions: dict[str, dict], actor: dict, state: dict) -
         return None
     left, slant, gear = found
     side = "left" if left > 0 else "right"
-    strips = strip_widths(road[side])
+    strips = strip_widths(road.get(side, []))
     kind = next((kind for kind, near, far in strips if near <= abs(left) <= far), None)
     if kind is None:
         return None
@@ -147,8 +147,8 @@ def reaches(road: dict, actor: dict, left: float, slant: float, gear: float) -> 
         return []
     half = 0.5 * (actor["width_m"] * math.sqrt(1 - slant**2) + actor["length_m"] * slant)
     # Every strip from the left of the line to the right of it.
-    strips = [(kind, near, far) for kind, near, far in strip_widths(road["left"])]
-    strips += [(kind, -far, -near) for kind, near, far in strip_widths(road["right"])]
+    strips = [(kind, near, far) for kind, near, far in strip_widths(road.get("left", []))]
+    strips += [(kind, -far, -near) for kind, near, far in strip_widths(road.get("right", []))]
     own = next(((near, far) for _, near, far in strips if near <= left <= far), None)
     found = []
     for kind, near, far in strips:
