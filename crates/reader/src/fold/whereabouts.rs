@@ -335,11 +335,8 @@ fn behind_partner(reading: &Reading<'_>, actor: Actor) -> Option<Fact<Origin>> {
 /// The queue in which the subject vehicle stands is ahead of it.
 fn in_queue(clues: &Clues<'_>) -> Option<Fact<Origin>> {
     let (from, end) = queue_of(clues.reading, clues.actor)?;
-    let reading = clues.reading;
-    // "yielding to a line of cars".
-    let yields = |(_, frame): (usize, &Frame)| frame.sense == Sense::Yield && frame.object == Some(clues.actor);
-    let held = held_in(reading, SUBJECT, from, end) || reading.before(SUBJECT).any(yields);
-    held.then(|| reading.told(Origin::Ahead, from, end))
+    let held = held_in(clues.reading, SUBJECT, from, end);
+    held.then(|| clues.reading.told(Origin::Ahead, from, end))
 }
 
 /// The tokens of somebody who is called a queue: "a queue of traffic".

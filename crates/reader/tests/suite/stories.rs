@@ -110,25 +110,6 @@ fn the_words_of_an_entry_name_the_intersection() {
 }
 
 #[test]
-fn the_words_of_who_stands_partly_in_a_lane_end_with_it() {
-    let ends = |words: &str| {
-        let account =
-            account_of(&format!("The AV {words}. A van passed it and hit the AV's left side.")).expect("an account");
-        match &account.sv.acts[0].source {
-            Source::Words { text, .. } => text.ends_with("lane"),
-            other => panic!("{other:?}"),
-        }
-    };
-    assert!(ends("was parked facing east at the north curb on Elm Street, partially in-lane, to let a rider out"));
-    assert!(ends("was stopped facing west, partly in the bicycle lane and partly in the right lane"));
-    assert!(ends(
-        "was stopped at the curb, partly in the bike lane and partially in the rightmost lane, with its lamps on"
-    ));
-    assert!(!ends("was stopped facing west, partly in the left lane and partly in the right lane"));
-    assert!(!ends("was stopped facing west, partly in the bike lane"));
-}
-
-#[test]
 fn the_words_of_an_opening_name_the_door() {
     let door = |text: &str| match account_of(text).expect("an account").door.expect("a door").source {
         Source::Words { text, .. } => text,

@@ -1,8 +1,6 @@
 //! Others than the two: who is told of besides them, and why the ego stood.
 
-use crate::reading::story::{
-    Story, has_siren, is_at_junction, is_parked, lets_in_at_green, stays_close,
-};
+use crate::reading::story::{Story, has_siren, is_at_junction, is_parked, lets_in_at_green, stays_close};
 use crate::reading::words::{before_contact, span, text};
 use crate::told::crash::Told;
 use crate::told::near::Near;
