@@ -70,10 +70,13 @@ impl<'a> Case<'a> {
         let by_account = cases.accounts.is_some();
         let log = made(Stage::Narrate).then(|| store.read_json(&names::narrative_log(id))).transpose()?;
         let narrative = match by_account {
-            // What a person spoiled stops its case at its design, and tells nothing.
-            true => retold::account(suite, id).ok().map(|account| tell(&account, id, cluster.template)),
-            false if made(Stage::Narrate) => store.read_json(&names::narrative(id)).ok(),
-            false => None,
+            true => Some(retold::account(suite, id).map(|account| tell(&account, id, cluster.template))),
+            false => made(Stage::Narrate).then(|| store.read_json(&names::narrative(id))),
+        };
+        // What a person spoiled stops its case at its design, and tells nothing.
+        let narrative = match narrative {
+            Some(Err(_)) if !made(Stage::Design) => None,
+            read => read.transpose()?,
         };
         let narrative = narrative.zip(log);
         let reading = cases.records.records[cluster.pick_index].reading.as_ref().filter(|_| !cluster.invented);

@@ -242,7 +242,7 @@ fn of_suite(dir: &Path) -> Result<(Vec<Named>, SystemProfile), PipelineError> {
     let ego = options.ego.as_ref().unwrap_or(&profile.ego);
     if *ego != Ego::MetadriveIdm.name() {
         return Err(PipelineError::bad_input(format!(
-            "the ego of {} is {ego}, which MetaDrive does not have; make the suite again with metadrive-idm",
+            "the ego of {} is {ego}, which MetaDrive does not have; make the suite again with the ego metadrive-idm",
             dir.display()
         )));
     }
