@@ -9,7 +9,7 @@ use recrash_model::rollout::{ActorState, ActorTrack};
 use recrash_roads::{Lane, RoadNetwork, RoadPart, Scenario};
 
 /// Who is over a line reaches over it by so much at least. [m]
-const LEAST_M: f64 = 0.35;
+pub(super) const LEAST_M: f64 = 0.35;
 
 /// Who is at more than this to the lane lies across it. [sine]
 const ACROSS: f64 = 0.7;
@@ -31,16 +31,21 @@ pub(super) fn astride(told: Astride, scenario: &Scenario, track: &ActorTrack, ti
     let until = ((time_s * 10.0) as usize).min(track.states.len() - 1);
     let stands = |step: &usize| track.states[*step].velocity().length() < STANDS_MPS;
     let at = match told.when {
-        AstrideWhen::Start => 0,
-        AstrideWhen::Stop => (0..=until).rfind(stands).unwrap_or(until),
-        AstrideWhen::Contact => until,
+        AstrideWhen::Start => Some(0),
+        AstrideWhen::Stop => (0..=until).rfind(stands),
+        AstrideWhen::Contact => Some(until),
     };
-    let state = &track.states[at];
-    let Some((lane, lines)) = under(scenario.network(), track, state) else {
-        return (CheckResult::CannotBeShown, "along no lane".to_owned());
-    };
+    let cannot = |why: &str| (CheckResult::CannotBeShown, why.to_owned());
+    let Some(state) = at.map(|at| &track.states[at]) else { return cannot("it did not stand") };
+    let network = scenario.network();
+    let Some((lane, lines)) = under(network, track, state) else { return cannot("along no lane") };
+    let first = &track.states[0];
+    let began = network.lane_at(first.position(), first.heading).map(|id| network.lane(id).road);
+    if told.side.is_some() && began.is_some_and(|road| road != lane.road) {
+        return cannot("on another road than it began on");
+    }
     // Of the lane in which it began: who has come over the line by half is on the other side of it.
-    let (began_m, gear) = (lane.local(track.states[0].position()).1, gear(lane, state));
+    let (began_m, gear) = (lane.local(first.position()).1, gear(lane, state));
     let on_side = |over: &Over| match told.side {
         None => true,
         Some(LeftRight::Left) => (over.at_m - began_m) * gear < 0.0,
@@ -67,13 +72,14 @@ fn gear(lane: &Lane, state: &ActorState) -> f64 {
     if math::wrap_angle(state.heading - lane.heading(s_m)).abs() < math::FRAC_PI_2 { 1.0 } else { -1.0 }
 }
 
-/// The lane that the middle of a body is in, and the lines beside it that the body reaches over; nothing of who is across it.
+/// The lane that the middle of a body is in, and the lines beside it that the body reaches over; nothing of who is across it, nor in a junction,
+/// where no lines are.
 fn under<'a>(network: &'a RoadNetwork, track: &ActorTrack, state: &ActorState) -> Option<(&'a Lane, Vec<Over>)> {
     let lane = network.lane(network.lane_at(state.position(), state.heading)?);
     let (s_m, t_m) = lane.local(state.position());
     let (way_rad, edge_m) = (lane.heading(s_m), 0.5 * lane.width_at(s_m));
     let sine = math::sin(state.heading - way_rad).abs();
-    if sine > ACROSS {
+    if sine > ACROSS || network.road(lane.road).part == RoadPart::Inner {
         return None;
     }
     let half_m = 0.5 * (track.width_m * (1.0 - sine * sine).sqrt() + track.length_m * sine);

@@ -1,5 +1,6 @@
 //! Whether a partner keeps a lane of its own direction until it leaves it for what is told of it, and drives as a vehicle can.
 
+use crate::facts::astride::astride;
 use crate::told::crash::Told;
 use crate::told::doing::Doing;
 use crate::told::layout::strip_of;
@@ -10,6 +11,7 @@ use recrash_model::account::{ContactState, Origin};
 use recrash_model::geometry::Vec2;
 use recrash_model::kinds::PartnerKind;
 use recrash_model::math;
+use recrash_model::metrics::CheckResult;
 use recrash_model::rollout::{ActorState, ActorTrack, STEP_S};
 use recrash_model::scenario::StripKind;
 use recrash_model::template::Movement;
@@ -56,8 +58,7 @@ pub(super) fn off_lane_s(told: &Told, scenario: &Scenario, track: &ActorTrack, c
         || told.drives_elsewhere()
         || told.pulls_out_opposite()
         || told.squeezes_by()
-        || told.splits_lanes().is_some()
-        || told.cp_drives_over()
+        || if told.cp_drives_over() { is_over(told, scenario, track, contact_s) } else { told.splits_lanes().is_some() }
     {
         return None;
     }
@@ -75,6 +76,11 @@ pub(super) fn off_lane_s(told: &Told, scenario: &Scenario, track: &ActorTrack, c
     let on_road = |state: &&ActorState| !leaves || math::wrap_angle(state.heading - first).abs() < ALONG_RAD;
     let steps = track.states[..=until].iter().step_by(EVERY).take_while(on_road).filter(off).count();
     Some(EVERY_S * steps as f64)
+}
+
+/// Whether the partner is seen over the line over which it is told.
+fn is_over(told: &Told, scenario: &Scenario, track: &ActorTrack, contact_s: f64) -> bool {
+    told.cp.astride.is_some_and(|over| astride(over, scenario, track, contact_s).0 == CheckResult::Shown)
 }
 
 /// Whether somebody is in no lane of its direction there. Nobody has to keep one in a junction, nor between two that it changes.

@@ -1,8 +1,10 @@
 //! Told lanes, held against where somebody is.
 
+use crate::facts::astride::LEAST_M;
 use crate::told::crash::Told;
 use crate::told::layout;
-use recrash_model::account::LaneWord;
+use crate::usual::STANDS_MPS;
+use recrash_model::account::{Astride, AstrideWhen, LaneLine, LaneWord};
 use recrash_model::kinds::PartnerKind;
 use recrash_model::math;
 use recrash_model::metrics::CheckResult;
@@ -29,21 +31,36 @@ pub(super) fn lane_words(word: LaneWord) -> &'static str {
     }
 }
 
-/// Whether somebody begins in the told lane of its road; on the opposite side it is when they touch. Where both are told to be in a lane
-/// for the same turn, side by side, there are two.
+/// Whether somebody begins in the told lane of its road; on the opposite side it is when they touch, and who is told to be partly in it where it
+/// stands may be so there. Where both are told to be in a lane for the same turn, side by side, there are two.
 pub(super) fn lane(
     (told, word): (&Told, LaneWord),
     scenario: &Scenario,
     [ego, track]: [&ActorTrack; 2],
     time_s: f64,
 ) -> (CheckResult, String) {
-    let network = scenario.network();
+    let until = ((time_s * 10.0) as usize).min(track.states.len() - 1);
     // Who is told to be on the opposite side went there, or comes from there into its own.
-    let at = if word == LaneWord::Opposing && !told.leaves_opposite() {
-        ((time_s * 10.0) as usize).min(track.states.len() - 1)
-    } else {
-        0
+    let at = if word == LaneWord::Opposing && !told.leaves_opposite() { until } else { 0 };
+    let over = if ego.id == track.id { told.sv.astride } else { told.cp.astride };
+    let is_at = |at: usize, when: AstrideWhen| {
+        lane_at((told, word), scenario, [ego, track], (at, over.filter(|over| over.when == when)))
     };
+    let found = is_at(at, AstrideWhen::Start);
+    let stop = (0..=until).rfind(|step| track.states[*step].velocity().length() < STANDS_MPS);
+    let stood = stop.map(|stop| is_at(stop, AstrideWhen::Stop));
+    let partly = over.is_some_and(|over| over.when == AstrideWhen::Stop) && found.0 == CheckResult::NotShown;
+    stood.filter(|stood| partly && stood.0 == CheckResult::Shown).unwrap_or(found)
+}
+
+/// The same, in this step, of who is told to be over a line then.
+fn lane_at(
+    (told, word): (&Told, LaneWord),
+    scenario: &Scenario,
+    [ego, track]: [&ActorTrack; 2],
+    (at, over): (usize, Option<Astride>),
+) -> (CheckResult, String) {
+    let network = scenario.network();
     let first = &track.states[at];
     let Some(id) = network.lane_at(first.position(), first.heading) else {
         return (CheckResult::NotShown, "on no lane".to_owned());
@@ -64,8 +81,7 @@ pub(super) fn lane(
     // Who is narrow may be anywhere in it.
     let drives = track.kind != PartnerKind::FixedObject;
     let of_ego = ego.id == track.id;
-    let over = if of_ego { told.sv.astride } else { told.cp.astride }.is_some();
-    let most_m = if over {
+    let most_m = if over.is_some() {
         0.5 * way.width_at(s_m)
     } else if drives {
         KEEPS_M.max(0.5 * (way.width_at(s_m) - track.width_m))
@@ -83,7 +99,8 @@ pub(super) fn lane(
     let last = lanes.len() - 1;
     let is = |number: usize| is_told(told, word, of_ego, (number, last));
     // Who is told partly in two is in that one, too, into which its body reaches.
-    let reaches = over && t_m.abs() + 0.5 * track.width_m > 0.5 * way.width_at(s_m);
+    let by_m = t_m.abs() + 0.5 * track.width_m - 0.5 * way.width_at(s_m);
+    let reaches = over.is_some_and(|over| over.line == LaneLine::Lanes) && by_m >= LEAST_M;
     let next = if t_m > 0.0 { Some(number + 1).filter(|next| *next <= last) } else { number.checked_sub(1) };
     let shown = match word {
         // Beside the driving lanes.

@@ -120,7 +120,9 @@ impl Ground {
         let beside_m = 0.5 * LANE_M - INSIDE_M;
         let [left, right] = [self.lane > 0, usize::from(self.lane) + 1 < self.lanes];
         let stands_m = match told.stands_over().map(|over| (over.line, over.side)) {
-            Some((LaneLine::Edge, _)) => self.lane_edges_m[1] - INSIDE_M,
+            // The left edge of a road with two directions is that of the other one.
+            Some((LaneLine::Edge, Some(LeftRight::Left))) if self.oncoming == 0 => INSIDE_M - self.lane_edges_m[0],
+            Some((LaneLine::Edge, Some(LeftRight::Right) | None)) => self.lane_edges_m[1] - INSIDE_M,
             Some((LaneLine::Centre, _)) if !left => -beside_m,
             Some((LaneLine::Lanes, Some(LeftRight::Left) | None)) if left => -beside_m,
             Some((LaneLine::Lanes, Some(LeftRight::Right) | None)) if right => beside_m,

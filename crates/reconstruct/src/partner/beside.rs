@@ -90,19 +90,28 @@ pub(super) fn line_y_m(told: &Told, staging: &Staging) -> Option<f64> {
         })
 }
 
-/// Who drives over a line between lanes has its middle no farther beside that. [m]
+/// Who drives over a line has its middle no farther beside that. [m]
 const OVER_WITHIN_M: f64 = 0.5;
 
-/// The line along which a partner came that drives over one: over that between the directions, else over the nearest. [m]
+/// The line along which a partner came that drives over one: over that between the directions, over the edge of the road on the told or touched
+/// side, else over the nearest between lanes of its direction; nothing where there is no such line. [m]
 pub(super) fn over_y_m(told: &Told, staging: &Staging) -> Option<f64> {
-    if !told.cp_drives_over() || told.splits_lanes().is_some() {
-        return None;
-    }
+    let over = told.cp.astride.filter(|_| told.comes_over_line())?;
     let (ground, y_m) = (&staging.ground, staging.cp.position.y);
-    let own_edge_m = ground.sv_pose(0.0).position.y + 0.5 * LANE_M;
-    let edge_m = match told.cp.is_over(LaneLine::Centre) {
-        true => own_edge_m + f64::from(ground.lane) * LANE_M,
-        false => own_edge_m + ((y_m - own_edge_m) / LANE_M).round() * LANE_M,
+    let (own_y_m, lane) = (ground.sv_pose(0.0).position.y, f64::from(ground.lane));
+    // Lines lie so many lanes to the left of that beside the ego's; the last before those of the other direction is that between the two.
+    let line = (y_m - own_y_m) / LANE_M - 0.5;
+    let (first, last) = match told.origin {
+        Origin::Opposite => (lane + 1.0, lane + ground.oncoming as f64 - 1.0),
+        _ => (lane + 1.0 - ground.lanes as f64, lane - 1.0),
+    };
+    let edge_m = match (over.line, over.side.or_else(|| told.touched_side())) {
+        (LaneLine::Centre, _) => own_y_m + (lane + 0.5) * LANE_M,
+        (LaneLine::Lanes, _) if first <= last => own_y_m + (line.round().clamp(first, last) + 0.5) * LANE_M,
+        // The left edge of a road with two directions is that of the other one.
+        (LaneLine::Edge, Some(LeftRight::Left)) if ground.oncoming == 0 => own_y_m + ground.lane_edges_m[0],
+        (LaneLine::Edge, Some(LeftRight::Right)) => own_y_m - ground.lane_edges_m[1],
+        _ => return None,
     };
     Some(y_m.clamp(edge_m - OVER_WITHIN_M, edge_m + OVER_WITHIN_M))
 }

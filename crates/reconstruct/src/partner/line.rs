@@ -66,17 +66,17 @@ pub(super) fn line_to(told: &Told, staging: &Staging, pace: Pace, at: impl Fn(Po
         course.curve(start, staging.cp, reverse).then(|| course.length_m())
     };
     // As far back as makes the line as long as what is driven.
-    let fitted = |aside: bool| -> Option<Pose> {
+    let fitted = |aside: bool, over_y_m: Option<f64>| -> Option<Pose> {
         let mut back_m = pace.driven_m;
         for _ in 0..30 {
-            let found = length(start(told, staging, back_m, aside, motion))?;
+            let found = length(start(told, staging, back_m, (aside, over_y_m), motion))?;
             back_m = (back_m + pace.driven_m - found).max(0.1);
         }
-        let begin = start(told, staging, back_m, aside, motion);
+        let begin = start(told, staging, back_m, (aside, over_y_m), motion);
         length(begin).is_some_and(|found| (found - pace.driven_m).abs() < 0.02).then_some(begin)
     };
-    // Who drives over a line comes from there.
-    let over = told.cp_drives_over() && told.splits_lanes().is_none();
+    // Who drives over a line comes from there, where it can.
+    let over = beside::over_y_m(told, staging).and_then(|y_m| fitted(true, Some(y_m)));
     let on_lanes = || {
         with_its_turn(told, staging, &pace, arm_m)
             .or_else(|| lateral::drew_in(told, staging, &pace, arm_m))
@@ -86,7 +86,7 @@ pub(super) fn line_to(told: &Told, staging: &Staging, pace: Pace, at: impl Fn(Po
             .or_else(|| turns::turns_in(told, staging, &pace, arm_m))
             .or_else(|| lanes::from_lane(told, staging, &pace, arm_m))
     };
-    if let Some((begin, mut course)) = if over { None } else { on_lanes() } {
+    if let Some((begin, mut course)) = if over.is_some() { None } else { on_lanes() } {
         course.push(beyond);
         let course = course.into_iter().map(|pose| Leg::Curve { to: at(pose), reverse }).collect();
         let plan = ActorPlan { speed_mps: pace.speed_mps, course, acts: pace.acts, ..ActorPlan::standing(at(begin)) };
@@ -100,7 +100,7 @@ pub(super) fn line_to(told: &Told, staging: &Staging, pace: Pace, at: impl Fn(Po
         let long = reverse && length_m > LONG_M;
         long && course.curve(*begin, staging.cp, reverse) && is_tight(&course, TIGHTEST_LENGTHS * length_m)
     };
-    let fitted = fitted(true).or_else(|| fitted(false)).filter(|begin| !whips(begin));
+    let fitted = over.or_else(|| fitted(true, None)).or_else(|| fitted(false, None)).filter(|begin| !whips(begin));
     let begin = fitted.unwrap_or_else(straight);
     let course = vec![Leg::Curve { to: at(staging.cp), reverse }, Leg::Curve { to: at(beyond), reverse }];
     let plan = ActorPlan { speed_mps: pace.speed_mps, course, acts: pace.acts, ..ActorPlan::standing(at(begin)) };
@@ -111,13 +111,18 @@ pub(super) fn line_to(told: &Told, staging: &Staging, pace: Pace, at: impl Fn(Po
 const LONG_M: f64 = 6.0;
 
 /// Where the partner begins, this far back, headed as it came: in the lane it comes from, or so that an arc leads to the contact.
-fn start(told: &Told, staging: &Staging, back_m: f64, aside: bool, motion: impl Fn(f64) -> Vec2) -> Pose {
+fn start(
+    told: &Told,
+    staging: &Staging,
+    back_m: f64,
+    (aside, over_y_m): (bool, Option<f64>),
+    motion: impl Fn(f64) -> Vec2,
+) -> Pose {
     let came = staging.cp_came;
     let way = motion(came);
     let turn = math::wrap_angle(staging.cp.heading - came);
     let mut position = staging.cp.position - way * back_m;
     let turns = told.cp.turning != Turning::No && turn.abs() > 0.1;
-    let over_y_m = beside::over_y_m(told, staging);
     let line_y_m = over_y_m.or_else(|| beside::line_y_m(told, staging)).filter(|_| aside && !turns);
     let pulls_out = aside && !turns && told.passes_from_behind() && over_y_m.is_none();
     if pulls_out {

@@ -134,8 +134,9 @@ fn lies_before_turn(told: &Told, sv: &Party) -> bool {
 }
 
 impl Told {
-    /// Whose turn no words tell has yet to begin it where it is hit from behind, or by who passes it; so has who is told to have come along, or
-    /// slowed, and nothing else, where it is hit from behind, or by who turns the same way across it.
+    /// Whose turn no words tell has yet to begin it where it slows or stands and is hit from behind, or by who passes it. So has who is told to have
+    /// come along, or slowed, and nothing else, where it is run into from behind; and by words for a way to the turn, "approaching", "slowing",
+    /// where it is hit from behind, or by who turns the same way across it. Beside who came along it may have begun to.
     fn turns_later_unsaid(&mut self, sv: &Party) {
         let unsaid = sv.movement.as_ref().is_some_and(|movement| !matches!(movement.source, Source::Words { .. }))
             && !sv.acts.iter().any(|fact| fact.act == Act::Turn);
@@ -144,11 +145,14 @@ impl Told {
             self.sv.slowed_from.is_some() || matches!(self.sv.state, ContactState::Stopped | ContactState::SettingOff);
         let passed = self.cp.movement == Some(Movement::Passing) && self.cp.turning == Turning::No;
         let behind = self.origin == Origin::Behind;
-        let in_line = behind && (self.crash_type == CrashType::FrontToRear || passed);
+        let into_rear = behind && self.crash_type == CrashType::FrontToRear;
         let before = || sv.acts.iter().filter(|fact| !fact.after_contact);
         let comes_along = before().next().is_some() && before().all(|fact| matches!(fact.act, Act::Follow | Act::Slow));
+        let mut words = before().map(|fact| &fact.source).chain(sv.state.iter().map(|fact| &fact.source)).map(text);
+        let nears = before().any(|fact| fact.act == Act::Slow) || words.any(|words| words.contains("approach"));
         let across = matches!(self.origin, Origin::Beside { .. }) && self.cp.turning == self.sv.turning;
-        if unsaid && (slows && in_line || comes_along && turns && (behind || across)) {
+        let before_turn = comes_along && (into_rear || nears && (behind || across));
+        if unsaid && (slows && (into_rear || behind && passed) || turns && before_turn) {
             self.sv.turns_later = turns && !self.enters();
         }
     }

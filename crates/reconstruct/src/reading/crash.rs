@@ -4,6 +4,7 @@ use crate::reading::order::{backs_behind, backs_first, slows_behind, stood_befor
 use crate::reading::origin::{self, assumed_origin};
 use crate::reading::side::side;
 use crate::reading::things::{self, POST};
+use crate::reading::words::text;
 use crate::reading::{acts, courses, edge, others, trailer};
 use crate::told::choices::Choices;
 use crate::told::crash::Told;
@@ -12,15 +13,18 @@ use crate::told::lies::Lies;
 use crate::told::side::Turning;
 use crate::told::times::CONTACT_S;
 use recrash_model::account::{
-    Account, Act, Astride, ContactState, CrashType, FirstContact, KindGroup, LaneLine, LeftRight, Origin, PlaceKind,
-    Source, Striker, Untold, told,
+    Account, Act, Astride, ContactState, CrashType, Fact, FirstContact, KindGroup, LaneLine, LeftRight, Origin,
+    PlaceKind, Source, Striker, Untold, told,
 };
 
-/// Who comes towards the ego partly in its lane is over the line between the directions.
-fn over_from(over: Astride, origin: Origin) -> Astride {
-    match (over.line, origin) {
-        (LaneLine::Lanes, Origin::Opposite) => Astride { line: LaneLine::Centre, side: None, ..over },
-        _ => over,
+/// Who comes towards the ego partly in that one's lane is over the line between the directions; not who is over one between two of its own.
+fn over_from(over: &Fact<Astride>, origin: Origin) -> Astride {
+    let words = text(&over.source);
+    let of_sv =
+        ["the av's", "waymo av's", "ego's", "opposing", "opposite", "oncoming"].iter().any(|word| words.contains(word));
+    match (over.value.line, origin) {
+        (LaneLine::Lanes, Origin::Opposite) if of_sv => Astride { line: LaneLine::Centre, side: None, ..over.value },
+        _ => over.value,
     }
 }
 
@@ -75,7 +79,7 @@ impl Told {
         let assumed_from =
             origin::out_of_stall(account, crash_type, &sv, &cp).or_else(|| assumed_origin(crash_type, &sv, &cp));
         let origin = origin.or(assumed_from).unwrap_or(Origin::Behind);
-        cp.astride = cp.astride.map(|over| over_from(over, origin));
+        cp.astride = partner.astride.as_ref().map(|over| over_from(over, origin));
         let layout = Layout::of(account, partner);
         let comes_round = origin_told && origin::comes_round(origin, partner, cp.state, cp.movement);
         let right = Some(LeftRight::Right);
@@ -142,7 +146,8 @@ impl Told {
             comes_over: origin::comes_over(origin, partner, movement),
             order,
             // What "was propelled into the road" by nobody who is told came there.
-            pushed: partner.did(Act::Pushed) && !(thing.is_some() && account.others.is_empty())
+            pushed: partner.did(Act::Pushed)
+                && !(thing.is_some() && account.others.is_empty() && things::is_pushed_by_nobody(partner))
                 || crash_type == CrashType::Secondary
                 || account.others.iter().any(|other| other.touched_partner),
             pusher: others::pusher(account),

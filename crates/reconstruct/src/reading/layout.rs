@@ -4,7 +4,7 @@ use crate::reading::words::{span, text};
 use crate::told::layout::{Counted, Layout, Standing, StoodOpen};
 use crate::told::zones::side_of;
 use recrash_model::account::{
-    Account, Act, ActFact, ContactState, Fact, LaneWord, LeftRight, Origin, Party, RoadFeature, SignalState, Source,
+    Account, Act, ActFact, Fact, LaneLine, LaneWord, LeftRight, Origin, Party, RoadFeature, SignalState, Source,
     Striker, told,
 };
 use recrash_model::template::Movement;
@@ -101,7 +101,9 @@ fn standing(account: &Account, party: &Party) -> Standing {
     let lane = party.lane.as_ref().and_then(|lane| Counted::of(&text(&lane.source)));
     let double = sources(party).any(|source| text(source).contains("double"));
     let stands = |fact: &&ActFact| matches!(fact.act, Act::Hold | Act::Park) && !fact.after_contact && !fact.begun;
-    let in_lane = double || party.acts.iter().rfind(stands).is_some_and(is_in_lane);
+    // Who is partly in a lane and partly beside it is in none.
+    let partly = told(&party.astride).is_some_and(|over| over.line == LaneLine::Edge);
+    let in_lane = double || !partly && party.acts.iter().rfind(stands).is_some_and(is_in_lane);
     Standing { counted: lane, at_kerb: stands_at_kerb(account, party), in_lane }
 }
 
@@ -191,21 +193,23 @@ fn rear_door(account: &Account, partner: &Party) -> Option<bool> {
     })
 }
 
-/// Since when a door had stood open: "with its door open", "a rider opened the door, and a van began to go round".
+/// Since when a door had stood open: "with its door open", "a rider opened the door, and a van began to go round"; nothing where no words tell that
+/// it had: "the opening door of a parked car".
 fn stood_open(account: &Account, partner: &Party) -> Option<StoodOpen> {
     let of_sv = told(&account.door)? == Striker::Sv;
     let (owner, other) = if of_sv { (&account.sv, partner) } else { (partner, &account.sv) };
     let Some(opened) = owner.acts.iter().find(|fact| fact.act == Act::OpenDoor) else {
-        // "was struck by the door of a parked car": it was opened then.
-        let stands = told(&partner.state).is_some_and(ContactState::stands);
-        let open = account.door.as_ref().is_some_and(|fact| text(&fact.source).contains("open"));
-        let into = !of_sv && stands && !open;
-        let since = if of_sv { StoodOpen::Shortly } else { StoodOpen::AllAlong };
-        return (!into).then_some(since);
+        let open = account.door.as_ref().is_some_and(|fact| is_open(&text(&fact.source)));
+        return open.then_some(if of_sv { StoodOpen::Shortly } else { StoodOpen::AllAlong });
     };
     let comes = |fact: &ActFact| matches!(fact.act, Act::Pass | Act::SetOff | Act::Reverse) && !fact.after_contact;
     let then = other.acts.iter().any(|fact| comes(fact) && fact.after_other == Some(opened.step));
     then.then_some(StoodOpen::Shortly)
+}
+
+/// "its open door", "a door that was ajar"; neither "the opening door" nor "which had opened".
+fn is_open(text: &str) -> bool {
+    text.split(|letter: char| !letter.is_alphanumeric()).any(|word| matches!(word, "open" | "ajar"))
 }
 
 fn sources(party: &Party) -> impl Iterator<Item = &Source> {

@@ -1,5 +1,6 @@
 //! Partners that are things: what they are, how large, how they lie, and whether they move by themselves.
 
+use crate::reading::words::text;
 use crate::told::lies::Lies;
 use crate::told::side::{Side, Turning};
 use recrash_model::account::{
@@ -116,6 +117,12 @@ pub(super) fn changed_lanes_before(account: &Account) -> bool {
     let changed =
         last(Act::LaneChange).filter(|_| thing && told(&account.sv.movement) == Some(Movement::ChangingLanes));
     changed.is_some_and(|changed| last(Act::Follow) > Some(changed))
+}
+
+/// Whether a thing was moved, and the words end there: "was propelled", neither "pushed a cart" nor "pushed by a person".
+pub(super) fn is_pushed_by_nobody(partner: &Party) -> bool {
+    let mut pushes = partner.acts.iter().filter(|fact| fact.act == Act::Pushed);
+    pushes.all(|fact| text(&fact.source).split_whitespace().last().is_some_and(|word| word.ends_with('d')))
 }
 
 /// Whether only the roof was touched: what did it hangs above the road.

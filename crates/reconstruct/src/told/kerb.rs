@@ -4,9 +4,7 @@ use crate::told::crash::Told;
 use crate::told::phase::Phase;
 use crate::told::side::Turning;
 use crate::told::zones::side_of;
-use recrash_model::account::{
-    Act, ContactState, LaneLine, LaneWord, LeftRight, Origin, PlaceKind, StandReason, Striker,
-};
+use recrash_model::account::{Act, ContactState, LaneWord, LeftRight, Origin, PlaceKind, StandReason, Striker};
 use recrash_model::template::Movement;
 
 impl Told {
@@ -16,7 +14,7 @@ impl Told {
         let parked = self.sv.state == ContactState::Parked || self.sv.came_to_park;
         let street = matches!(self.place, PlaceKind::Street | PlaceKind::Intersection | PlaceKind::Other);
         let there = (parked || self.stops_at_kerb()) && !self.is_in_lane(true);
-        street && (there || self.is_partly_in_lane()) && !stands
+        street && (there || self.is_partly_in_lane(true)) && !stands
     }
 
     /// Whether one of the two is told to stand in a driving lane: by a word for the lane, double-parked, or passed by who takes the opposite
@@ -37,7 +35,7 @@ impl Told {
         let parked = side.state == ContactState::Parked || side.came_to_park || side.state.stands() && told.at_kerb;
         street
             && parked
-            && !side.is_over(LaneLine::Edge)
+            && !self.is_partly_in_lane(of_ego)
             && !self.is_in_lane(of_ego)
             && (of_ego || self.thing.is_none())
     }

@@ -69,9 +69,9 @@ pub(crate) struct Layout {
 /// Since when a door stands open as the other comes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum StoodOpen {
-    /// It was opened shortly before.
+    /// It was opened shortly before; also of an ego's of which nobody is told to have opened it.
     Shortly,
-    /// Nobody is told to have opened it.
+    /// It stands so from the start: nobody is told to have opened it, and it is not the ego's.
     AllAlong,
 }
 

@@ -7,7 +7,7 @@ use crate::told::layout::strip_of;
 use crate::told::side::{Turning, is_on_foot};
 use crate::told::zones::side_of;
 use crate::usual::LANE_M;
-use recrash_model::account::{ContactState, LaneWord, LeftRight, Origin, PlaceKind};
+use recrash_model::account::{ContactState, LaneLine, LaneWord, LeftRight, Origin, PlaceKind};
 use recrash_model::template::Movement;
 use recrash_model::zones::ContactZone;
 
@@ -17,6 +17,11 @@ fn touched_side(zones: &[ContactZone]) -> Option<LeftRight> {
 }
 
 impl Told {
+    /// On which side the ego is touched.
+    pub(crate) fn touched_side(&self) -> Option<LeftRight> {
+        touched_side(&self.sv.zones)
+    }
+
     /// Whether the partner comes along the ego's lane behind it and passes it.
     pub(crate) fn passes_from_behind(&self) -> bool {
         let own_lane = match (self.cp.lane, self.sv.lane) {
@@ -39,7 +44,7 @@ impl Told {
     /// On which side of an ego that keeps its lane the partner comes by between that and the next one.
     pub(crate) fn splits_lanes(&self) -> Option<LeftRight> {
         let keeps = self.sv.turning == Turning::No && self.cp.turning == Turning::No && self.sv_aside().is_none();
-        let over = self.cp_drives_over();
+        let over = self.cp_drives_over() && self.cp.is_over(LaneLine::Lanes);
         let moves = self.cp.state == ContactState::Moving && (!self.cp.stood_first || over) && !self.is_at_kerb();
         let splits = (self.layout.splits || over) && self.origin == Origin::Behind && keeps && moves;
         self.cp.passes_on().or_else(|| touched_side(&self.sv.zones)).filter(|_| splits)

@@ -11,7 +11,7 @@ use crate::touch::headings::headings;
 use crate::touch::opening::{DOOR_M, OPEN_DEG, OPENS_S, Opening, THICK_M, zone_of};
 use crate::touch::staging::Staging;
 use recrash_metrics::contact::contact_geometry;
-use recrash_model::account::{ContactState, LeftRight, Origin, Striker};
+use recrash_model::account::{Act, ContactState, LeftRight, Origin, Striker};
 use recrash_model::geometry::{OrientedBox, Pose, Vec2};
 use recrash_model::kinds::PartnerKind;
 use recrash_model::math;
@@ -73,6 +73,7 @@ fn openings(told: &Told, owner: &Side, of_sv: bool) -> Vec<Opening> {
     let opened_s = match told.layout.stood_open {
         Some(StoodOpen::AllAlong) => vec![OPEN_ALL_ALONG_S],
         Some(StoodOpen::Shortly) => vec![OPENED_SHORTLY_S],
+        None if drives_open(told, of_sv) => vec![OPEN_ALL_ALONG_S],
         None => vec![0.5, 0.7, 0.4, 0.9, OPENED_BEFORE_S],
     };
     let mut list = Vec::new();
@@ -94,6 +95,12 @@ fn openings(told: &Told, owner: &Side, of_sv: bool) -> Vec<Opening> {
         }
     }
     list
+}
+
+/// Whether the door is that of a partner that drives, and nobody is told to open it: it was open, more likely.
+fn drives_open(told: &Told, of_sv: bool) -> bool {
+    let opened = told.cp.acts.iter().any(|doing| doing.act == Act::OpenDoor);
+    !of_sv && told.cp.state == ContactState::Moving && told.thing.is_none() && !opened
 }
 
 /// The arm of a gate, and where it may meet the other, from its end. [m]
@@ -200,7 +207,7 @@ fn met_points(told: &Told, other: &Side) -> Vec<(f64, f64)> {
     use ContactZone as Z;
     let usual = [Z::Left, Z::Right, Z::FrontLeft, Z::FrontRight];
     let mut zones = if other.zones.is_empty() { usual.to_vec() } else { other.zones.clone() };
-    if told.layout.stood_open.is_some() {
+    if told.layout.stood_open.is_some() || drives_open(told, told.door == Some(Striker::Sv)) {
         let side = side_of(&other.zones);
         zones.extend(side.map(|side| if side > 0.0 { Z::FrontLeft } else { Z::FrontRight }));
     }

@@ -178,8 +178,7 @@ const STRAIGHT_M: f64 = 15.0;
 const TIGHTER: [f64; 2] = [1.0, 0.75];
 const BEGINS_M: f64 = 0.3;
 
-/// A bend that begins in the middle of a lane and leads to a pose: where it ends, at the pose or before it, its radius, and how many lanes lie
-/// between that lane and the one for its turn. [m, 1]
+/// A bend out of the middle of a lane: where it ends, its radius, and how many lanes lie between that lane and the one for its turn. [m, 1]
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct LaneBend {
     pub(crate) end: Pose,
@@ -187,6 +186,7 @@ pub(crate) struct LaneBend {
     lanes_off: usize,
 }
 
+/// A bend that begins in the middle of a lane and leads to a pose: it ends there, or before it.
 pub(crate) fn bend_from_lane(
     told: &Told,
     (ground, sv): (&Ground, Pose),

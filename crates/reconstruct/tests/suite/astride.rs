@@ -1,9 +1,10 @@
 //! Who is told to be partly in one lane and partly elsewhere is drawn over the line, and that is checked.
 
 use crate::ways::{made, story};
+use recrash_model::account::{Astride, AstrideWhen, Fact, LaneLine, LaneWord, LeftRight};
 use recrash_model::metrics::{Check, CheckKind, CheckResult};
 use recrash_model::rollout::ActorTrack;
-use recrash_reconstruct::{Reconstruction, held_against};
+use recrash_reconstruct::{Reconstruction, held_against, reconstruct};
 
 const PARKED: &str = "The AV was parked facing north on Elm Street, partially in the right lane and partially in the parking lane. A van traveling \
                       north passed the AV on the left and the right side of the van made contact with the rear left of the AV.";
@@ -84,5 +85,87 @@ fn who_is_wholly_in_a_lane_or_beside_it_is_over_no_line() {
         let held = held_against(&account, &scenario, &made.rollout).unwrap();
         let over = held.checks.iter().find(|check| check.kind == CheckKind::SvAstride).unwrap();
         assert_eq!(over.result, CheckResult::CannotBeShown, "{over:?} of {other}");
+    }
+}
+
+const NEVER_STOOD: &str = "The AV was traveling north on Elm Street. A truck ahead was straddling two lanes, drifted to the right and its right side made \
+                           contact with the front left of the AV.";
+
+#[test]
+fn who_never_stood_is_over_no_line_where_it_stands() {
+    let mut account = story(NEVER_STOOD);
+    let over = Astride { line: LaneLine::Lanes, side: None, when: AstrideWhen::Stop };
+    account.partner.as_mut().unwrap().astride = Some(Fact::by_rule(over, "made for this test"));
+    let made = made(&account);
+    let over = check(&made, CheckKind::CpAstride);
+    assert_eq!((over.result, over.observed.as_str()), (CheckResult::CannotBeShown, "it did not stand"));
+}
+
+const LEFT_EDGE: &str = "The AV was parked facing north on Elm Street, a one-way street, partially in the left lane and partially in the parking lane. A van \
+                         traveling north passed the AV on the right and the left side of the van made contact with the rear right of the AV.";
+
+#[test]
+fn who_is_over_the_left_edge_of_a_one_way_road_stands_there() {
+    let mut account = story(LEFT_EDGE);
+    let over = Astride { line: LaneLine::Edge, side: Some(LeftRight::Left), when: AstrideWhen::Stop };
+    account.sv.astride = Some(Fact::by_rule(over, "made for this test"));
+    let left = made(&account);
+    shows(&left, CheckKind::SvAstride);
+    let ego = left.rollout.ego_track();
+    assert!(ego.states[0].y + 0.5 * ego.width_m > 2.0, "{:?}", ego.states[0]);
+    // The other edge does not pass for it.
+    let over = Astride { side: Some(LeftRight::Right), ..over };
+    account.sv.astride = Some(Fact::by_rule(over, "made for this test"));
+    let scenario = recrash_roads::check(left.draft).unwrap().value;
+    let held = held_against(&account, &scenario, &left.rollout).unwrap();
+    let seen = held.checks.iter().find(|check| check.kind == CheckKind::SvAstride).unwrap();
+    assert_eq!(seen.result, CheckResult::CannotBeShown, "{seen:?}");
+}
+
+const OWN_LANES: &str = "The AV was traveling north on Elm Street. An oncoming truck was driving partially in the left lane and partially in the right lane, \
+                         drifted to the left and struck the front left of the AV.";
+
+#[test]
+fn who_comes_towards_the_ego_between_two_lanes_of_its_own_is_not_over_the_line_between_the_directions() {
+    let made = made(&story(OWN_LANES));
+    let over = check(&made, CheckKind::CpAstride);
+    assert!(over.expected.contains("between two lanes"), "{over:?}");
+    assert_ne!(over.result, CheckResult::Shown, "{over:?}");
+}
+
+const SHOULDER: &str = "The AV was traveling in the left lane. A sedan behind was driving partially on the right shoulder, passed the AV on the right and \
+                        its front left made contact with the rear right of the AV.";
+
+#[test]
+fn who_comes_along_the_edge_is_not_between_two_lanes() {
+    let right = reconstruct(&story(SHOULDER)).unwrap();
+    let over = check(&right, CheckKind::CpAstride);
+    assert!(over.expected.contains("edge"), "{over:?}");
+    let (first, ego) = (actor(&right, "cp").states[0], right.rollout.ego_track().states[0]);
+    assert!(ego.y - first.y > 3.4 || over.result == CheckResult::CannotBeShown, "{first:?} {over:?}");
+    // On the left of a road with two directions there is none.
+    let left = SHOULDER
+        .replace("right", "other")
+        .replace("left", "right")
+        .replace("other", "left")
+        .replace("the right lane", "the left lane");
+    let left = reconstruct(&story(&left)).unwrap();
+    let first = actor(&left, "cp").states[0];
+    assert!(first.y < left.rollout.ego_track().states[0].y + 2.0, "{first:?}");
+    assert_eq!(check(&left, CheckKind::CpAstride).result, CheckResult::CannotBeShown);
+}
+
+#[test]
+fn a_lane_is_told_of_who_is_between_two_at_the_start_alone() {
+    let between = made(&story(BETWEEN));
+    let scenario = recrash_roads::check(between.draft).unwrap().value;
+    let mut account = story(BETWEEN);
+    for (when, result) in [(AstrideWhen::Start, CheckResult::Shown), (AstrideWhen::Contact, CheckResult::NotShown)] {
+        let partner = account.partner.as_mut().unwrap();
+        partner.lane = Some(Fact::by_rule(LaneWord::Left, "made for this test"));
+        partner.astride.as_mut().unwrap().value.when = when;
+        let held = held_against(&account, &scenario, &between.rollout).unwrap();
+        let lane = held.checks.iter().find(|check| check.kind == CheckKind::CpLane).unwrap();
+        assert_eq!(lane.result, result, "{when:?}: {lane:?}");
     }
 }

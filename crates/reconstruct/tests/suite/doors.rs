@@ -3,7 +3,7 @@
 use crate::ways::{before_contact, made, story};
 use recrash_model::metrics::{Check, CheckKind, CheckResult};
 use recrash_model::scenario::{Deed, Trigger};
-use recrash_reconstruct::{Reconstruction, held_against};
+use recrash_reconstruct::{Reconstruction, held_against, reconstruct};
 
 const WITH_ITS_DOOR_OPEN: &str = "The AV was traveling west when it approached a van parked on the right curb with its front left door open. The right \
                                   side of the AV made contact with the open front left door of the parked van.";
@@ -47,4 +47,15 @@ fn a_door_that_was_opened_before_the_other_set_off_stands_open() {
     let checks = held_against(&story(OPENED_BEFORE), &scenario, &into.rollout).expect("it can be staged").checks;
     let swung = checks.iter().find(|check| check.kind == CheckKind::Door).expect("told");
     assert_eq!(swung.result, CheckResult::NotShown, "{swung:?}");
+}
+
+#[test]
+fn an_opening_door_had_not_stood_open() {
+    let opening = WITH_ITS_DOOR_OPEN
+        .replace(" with its front left door open", "")
+        .replace("open front left", "opening front left");
+    let shown = reconstruct(&story(&opening)).expect("it can be staged");
+    assert_eq!(door(&shown).expected, "the partner's door");
+    assert!(opened_before_s(&shown) < 2.5, "{}", opened_before_s(&shown));
+    assert_eq!(door(&made(&story(WITH_ITS_DOOR_OPEN))).expected, "the partner's door, which stood open");
 }

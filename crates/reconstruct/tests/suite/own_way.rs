@@ -237,6 +237,19 @@ fn an_ego_of_which_a_column_alone_tells_a_turn_has_yet_to_begin_it_while_it_come
 }
 
 #[test]
+fn an_ego_whose_turn_a_column_tells_is_met_in_it_beside_where_no_words_tell_a_way_to_it() {
+    let mut account = story(
+        "The AV was traveling north. A sedan approaching from behind attempted to pass on the left and struck the left side of the AV.",
+    );
+    account.sv.movement = Some(Fact::of_column(Movement::LeftTurn, "SV Pre-Crash Movement"));
+    let made = made(&account);
+    let movement = made.verdict.checks.iter().find(|check| check.kind == CheckKind::SvMovement);
+    assert_eq!(movement.map(|check| check.expected.as_str()), Some("left turn"));
+    let met = made.rollout.ego_track().states[before_contact(&made)];
+    assert!(met.heading > 0.3, "{met:?}");
+}
+
+#[test]
 fn an_ego_that_left_off_its_turn_to_stop_stands_in_it() {
     let made = made(&story(
         "The AV began to enter the intersection to turn right onto Oak Street, but stopped before completing the turn to yield to a pedestrian. A \

@@ -159,6 +159,14 @@ fn what_was_hurled_into_the_road_by_nobody_comes_there() {
     let shown = made(&story(HURLED));
     assert!(shown.is_true(), "{:?}", shown.verdict);
     assert!(shown.verdict.checks.iter().all(|check| check.kind != CheckKind::PassedOn));
+    // Who pushed it is not drawn.
+    let mut account = story(HURLED);
+    let acts = &mut account.partner.as_mut().unwrap().acts;
+    let push = acts.iter_mut().find(|fact| fact.act == Act::Pushed).unwrap();
+    push.source = Source::Words { start: 0, end: 15, text: "pushed a pallet".to_owned() };
+    let pushed = made(&account);
+    let by = pushed.verdict.checks.iter().find(|check| check.kind == CheckKind::PassedOn).unwrap();
+    assert_eq!(by.result, CheckResult::CannotBeShown, "{by:?}");
 }
 
 #[test]
