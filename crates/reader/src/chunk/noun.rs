@@ -459,12 +459,36 @@ impl Chunker<'_> {
         self.finish(noun, first, at)
     }
 
+    /// "a police officer directing traffic", "was waved on by a police officer": of an officer of whom the story tells nothing like that, nobody
+    /// knows whether it is a car.
+    fn is_on_foot(&self, at: usize, length: usize) -> bool {
+        const FOOT: [&str; 11] =
+            ["direct", "stand", "stood", "wav", "walk", "gestur", "motion", "beckon", "whistl", "stepp", "conducting"];
+        let end = at + length;
+        let police = matches!(self.text(at), "police" | "patrol" | "law");
+        if !police || !matches!(self.text(end - 1), "officer" | "officers") {
+            return true;
+        }
+        let tells = |at: usize| {
+            let word = self.text(at);
+            let stop = word == "conducting" && self.text(at + 1) != "traffic" && self.text(at + 2) != "traffic";
+            word == "foot" || FOOT.iter().any(|stem| word.starts_with(stem)) && !stop
+        };
+        let met = (1..4).any(|back| back <= at && matches!(self.text(at - back), "struck" | "hit" | "contact"));
+        let stop = (0..self.tokens.len()).any(|at| self.text(at) == "traffic" && self.text(at + 1) == "stop");
+        let drives = matches!(self.text(end), "'s" | "'" | "vehicle" | "car" | "with" | "in") || stop;
+        !drives && (met || (0..self.tokens.len()).any(tells))
+    }
+
     pub(super) fn head(&self, at: usize) -> Option<(Meaning, usize)> {
         let found = self.lexicon.longest(self.tokens, at, |meaning| {
             matches!(meaning, Meaning::Subject | Meaning::Kind(_) | Meaning::Occupant(_))
         })?;
         // "the Pony AV": a company that is called as an animal is, written large.
         if found.meaning == Meaning::Kind(Kind::Animal) && self.tokens[at].capital && self.company(at) {
+            return None;
+        }
+        if found.meaning == Meaning::Kind(Kind::Pedestrian) && !self.is_on_foot(at, found.length) {
             return None;
         }
         let part = self.part(at).map_or(0, |(_, length)| length);
