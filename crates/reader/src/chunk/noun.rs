@@ -474,10 +474,18 @@ impl Chunker<'_> {
             let stop = word == "conducting" && self.text(at + 1) != "traffic" && self.text(at + 2) != "traffic";
             word == "foot" || FOOT.iter().any(|stem| word.starts_with(stem)) && !stop
         };
-        let met = (1..4).any(|back| back <= at && matches!(self.text(at - back), "struck" | "hit" | "contact"));
+        // "A police officer ran into the road, and it struck the police officer": told of any mention.
+        let on_foot = |at: usize| {
+            let begins = (0..at).rfind(|&at| self.text(at) == ".").map_or(0, |stop| stop + 1);
+            let ends = (at..self.tokens.len()).find(|&at| self.text(at) == ".").unwrap_or(self.tokens.len());
+            let met = at.saturating_sub(5).max(begins)..at;
+            (begins..ends).any(tells) || met.into_iter().any(|at| matches!(self.text(at), "struck" | "hit" | "contact"))
+        };
+        let officer = |at: usize| matches!(self.text(at), "officer" | "officers") && self.text(at + 1) != "'s";
         let stop = (0..self.tokens.len()).any(|at| self.text(at) == "traffic" && self.text(at + 1) == "stop");
-        let drives = matches!(self.text(end), "'s" | "'" | "vehicle" | "car" | "with" | "in") || stop;
-        !drives && (met || (0..self.tokens.len()).any(tells))
+        let next = self.text(end);
+        let drives = matches!(next, "'s" | "'" | "vehicle" | "car" | "with" | "in" | "riding" | "driving") || stop;
+        !drives && (0..self.tokens.len()).any(|at| officer(at) && on_foot(at))
     }
 
     pub(super) fn head(&self, at: usize) -> Option<(Meaning, usize)> {

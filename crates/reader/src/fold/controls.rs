@@ -253,7 +253,12 @@ fn of_those_ahead(reading: &Reading<'_>, all: &mut Vec<Fact<Control>>, turned: O
         let (first, end) = reading.window(number);
         let shared = |at: usize| {
             let near = (at + 1..at + 5).map(word);
-            near.into_iter().any(|word| matches!(word, "light" | "signal" | "traffic" | "queue" | "red" | "them"))
+            near.into_iter().any(|word| {
+                matches!(
+                    word,
+                    "light" | "signal" | "traffic" | "queue" | "red" | "them" | "stopped" | "vehicles" | "cars"
+                )
+            })
         };
         let cause = |at: usize| matches!(word(at), "for" | "because" | "due" | "avoid") && !shared(at);
         story.frames[number].object.is_none_or(|object| Some(object) != who) && (first..end).any(cause)
