@@ -108,7 +108,7 @@ pub(super) fn controls(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<Control>
 }
 
 /// "a truck with a broken stop light", "the stop light of a van": a lamp of that.
-fn is_lamp(reading: &Reading<'_>, (at, length): (usize, usize)) -> bool {
+pub(super) fn is_lamp(reading: &Reading<'_>, (at, length): (usize, usize)) -> bool {
     let tokens = &reading.story.tokens;
     let word = |at: usize| tokens.get(at).map_or("", |token| token.text.as_str());
     let vehicle = |at: usize| {
@@ -118,7 +118,8 @@ fn is_lamp(reading: &Reading<'_>, (at, length): (usize, usize)) -> bool {
     let article = usize::from(matches!(word(at + length + 1), "a" | "an" | "the"));
     let of = word(at + length) == "of" && vehicle(at + length + 1 + article);
     let with = (1..5).any(|back| back < at && word(at - back) == "with" && vehicle(at - back - 1));
-    word(at) == "stop" && matches!(word(at + 1), "light" | "signal") && (of || with)
+    let broken = at > 0 && matches!(word(at - 1), "broken" | "faulty" | "defective");
+    word(at) == "stop" && matches!(word(at + 1), "light" | "signal") && (of || with || broken)
 }
 
 /// "slowed for a red light but did not stop and entered the intersection": what it does behind this frame.
