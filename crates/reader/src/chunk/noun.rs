@@ -459,12 +459,44 @@ impl Chunker<'_> {
         self.finish(noun, first, at)
     }
 
+    /// "a police officer directing traffic", "was waved on by a police officer": of an officer of whom the story tells nothing like that, nobody
+    /// knows whether it is a car.
+    fn is_on_foot(&self, at: usize, length: usize) -> bool {
+        const FOOT: [&str; 11] =
+            ["direct", "stand", "stood", "wav", "walk", "gestur", "motion", "beckon", "whistl", "stepp", "conducting"];
+        let end = at + length;
+        let police = matches!(self.text(at), "police" | "patrol" | "law");
+        if !police || !matches!(self.text(end - 1), "officer" | "officers") {
+            return true;
+        }
+        let tells = |at: usize| {
+            let word = self.text(at);
+            let stop = word == "conducting" && self.text(at + 1) != "traffic" && self.text(at + 2) != "traffic";
+            word == "foot" || FOOT.iter().any(|stem| word.starts_with(stem)) && !stop
+        };
+        // "A police officer ran into the road, and it struck the police officer": told of any mention.
+        let on_foot = |at: usize| {
+            let begins = (0..at).rfind(|&at| self.text(at) == ".").map_or(0, |stop| stop + 1);
+            let ends = (at..self.tokens.len()).find(|&at| self.text(at) == ".").unwrap_or(self.tokens.len());
+            let met = at.saturating_sub(5).max(begins)..at;
+            (begins..ends).any(tells) || met.into_iter().any(|at| matches!(self.text(at), "struck" | "hit" | "contact"))
+        };
+        let officer = |at: usize| matches!(self.text(at), "officer" | "officers") && self.text(at + 1) != "'s";
+        let stop = (0..self.tokens.len()).any(|at| self.text(at) == "traffic" && self.text(at + 1) == "stop");
+        let next = self.text(end);
+        let drives = matches!(next, "'s" | "'" | "vehicle" | "car" | "with" | "in" | "riding" | "driving") || stop;
+        !drives && (0..self.tokens.len()).any(|at| officer(at) && on_foot(at))
+    }
+
     pub(super) fn head(&self, at: usize) -> Option<(Meaning, usize)> {
         let found = self.lexicon.longest(self.tokens, at, |meaning| {
             matches!(meaning, Meaning::Subject | Meaning::Kind(_) | Meaning::Occupant(_))
         })?;
         // "the Pony AV": a company that is called as an animal is, written large.
         if found.meaning == Meaning::Kind(Kind::Animal) && self.tokens[at].capital && self.company(at) {
+            return None;
+        }
+        if found.meaning == Meaning::Kind(Kind::Pedestrian) && !self.is_on_foot(at, found.length) {
             return None;
         }
         let part = self.part(at).map_or(0, |(_, length)| length);

@@ -705,7 +705,7 @@ pub(super) fn leaves_rest(reading: &Reading<'_>, frame: &Frame) -> bool {
     let mut rest = words.skip_while(says_how);
     let stands = match (rest.next().unwrap_or_default(), rest.next().unwrap_or_default()) {
         ("stationary" | "stopped" | "standing" | "parked" | "resting", next) => matches!(next, "position" | "start"),
-        ("stop" | "halt", next) => !matches!(next, "sign" | "line" | "bar"),
+        ("stop" | "halt", next) => !matches!(next, "sign" | "line" | "bar" | "light" | "signal"),
         (word, _) => matches!(word, "standstill" | "rest"),
     };
     matches!(frame.act(), Some(Act::Follow | Act::Accelerate)) && frame.happened() && from && stands

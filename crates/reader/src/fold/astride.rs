@@ -3,16 +3,17 @@
 use super::Reading;
 use crate::chunk::bound;
 use crate::frame::Frame;
+use crate::lexicon::{Form, Lexicon, Meaning};
 use crate::world::{Actor, SUBJECT};
-use recrash_model::account::{Act, Astride, AstrideWhen, Compass, Fact, Kind, LaneLine, LeftRight};
+use recrash_model::account::{Act, Astride, AstrideWhen, Compass, Fact, Kind, KindGroup, LaneLine, LeftRight};
 
 /// A place that somebody is partly in, as it is named.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Region {
     /// A lane, or the road: which side of its own lane that is on, and whether it is told to be another one than that.
     Lane { side: Option<LeftRight>, other: bool },
-    /// Beside the lanes: room to park, a bicycle lane, a shoulder.
-    Beside,
+    /// Beside the lanes: room to park, a bicycle lane, a shoulder; and on which side of the road that is.
+    Beside(Option<LeftRight>),
     /// The other side of the road, or the middle of it.
     Over,
     /// A road or a lane that leads this way.
@@ -35,9 +36,13 @@ pub(super) fn astride(reading: &Reading<'_>, actor: Actor) -> Option<Fact<Astrid
         let (first, second) = partly(reading, at)?;
         let end = second.unwrap_or(first).1;
         let frame = told_of(reading, at).filter(|frame| frame.who == Some(actor))?;
+        if is_of_another(reading, frame, at) {
+            return None;
+        }
         let act = act_of(reading, (at, end), actor)?;
         let line = line(reading, (at, frame), act, (first.0, second.map(|named| named.0)))?;
-        Some(reading.told(Astride { line, side: side(line, first.0, second), when: when(act) }, at, end))
+        let when = when(act, was_so(reading, at));
+        Some(reading.told(Astride { line, side: side(line, first.0, second), when }, at, end))
     })
 }
 
@@ -69,7 +74,7 @@ fn partly(reading: &Reading<'_>, at: usize) -> Option<(Named, Option<Named>)> {
     if reaches && leads_in(word(at + 1)) {
         return Some((region(reading, at + 2)?, None));
     }
-    let line = word(at) == "on" && (at + 1..at + 4).any(|at| word(at) == "yellow");
+    let line = word(at) == "on" && (at + 1..at + 4).any(|at| is_yellow_line(reading, at));
     if line && !is_partly(word(at.wrapping_sub(1))) {
         return Some((region(reading, at + 1).filter(|(region, _)| *region == Region::Over)?, None));
     }
@@ -79,17 +84,41 @@ fn partly(reading: &Reading<'_>, at: usize) -> Option<(Named, Option<Named>)> {
         return None;
     }
     let first = region(reading, to + 1)?;
+    // "was halfway across the road": on its way to the other side.
+    let road = (to + 1..first.1).any(|at| matches!(word(at), "road" | "roadway" | "street"));
+    if word(to) == "across" && road {
+        return None;
+    }
     Some((first, and_partly(reading, first.1)))
 }
 
 /// "and partially in the parking lane", "and the bike lane", behind the first of two places.
 fn and_partly(reading: &Reading<'_>, at: usize) -> Option<Named> {
     let word = |at: usize| word(reading, at);
-    let from = (at..at + AND_WITHIN).find(|&at| word(at) == "and")? + 1;
+    let within = (at..at + AND_WITHIN).take_while(|&at| !matches!(word(at), "," | "."));
+    let from = within.into_iter().find(|&at| word(at) == "and")? + 1;
+    let again = is_partly(word(from)) || leads_in(word(from));
     let from = from + usize::from(is_partly(word(from)));
     let from = if leads_in(word(from)) { from + 1 } else { from };
     let article = matches!(word(from), "the" | "a" | "its") || leads_in(word(from - 1));
-    region(reading, from).filter(|_| article)
+    // "partly in the right lane and the left lane was blocked": another clause.
+    let named = region(reading, from).filter(|_| article)?;
+    (again || !is_verb(reading, named.1)).then_some(named)
+}
+
+/// Whether a finite verb stands at this token.
+fn is_verb(reading: &Reading<'_>, at: usize) -> bool {
+    let be = matches!(word(reading, at), "was" | "were" | "is" | "are" | "had" | "has" | "became" | "remained");
+    let finite = |frame: &Frame| frame.first == at && matches!(frame.form, Form::Past | Form::Present);
+    be || reading.story.frames.iter().any(finite)
+}
+
+/// Whether this word is the yellow of a line of the road: "the yellow center line", and not "a yellow light in the lane".
+fn is_yellow_line(reading: &Reading<'_>, at: usize) -> bool {
+    let word = |at: usize| word(reading, at);
+    let line = |at: usize| matches!(word(at), "line" | "lines" | "centerline" | "divider");
+    let between = matches!(word(at + 1), "center" | "dividing" | "lane");
+    word(at) == "yellow" && (line(at + 1) || between && line(at + 2) || at > 0 && word(at - 1) == "double")
 }
 
 /// The name of a road may stand between a lane and "and": "in the northbound lane of Elm Street and". [tokens]
@@ -98,17 +127,23 @@ const AND_WITHIN: usize = 5;
 /// The place that is named from this token on, up to its noun.
 fn region(reading: &Reading<'_>, from: usize) -> Option<Named> {
     let word = |at: usize| word(reading, at);
-    let ends =
-        |at: &usize| matches!(word(*at), "" | "." | "," | "and" | "when" | "while" | "as" | "with" | "for" | "to");
+    let of_side = |at: usize| word(at) == "of" && word(at - 1) == "side";
+    let ends = |at: &usize| {
+        let clause = matches!(word(*at), "" | "." | "," | "and" | "when" | "while" | "as" | "with" | "for" | "to");
+        let place = matches!(word(*at), "in" | "of" | "from" | "at" | "light" | "signal" | "arrow");
+        clause || place && !of_side(*at)
+    };
     let mut end = from;
     let noun = loop {
         // "the second to the right lane", "the second from the right lane".
-        let counted = word(end) == "to" && word(end + 1) == "the" && word(end.wrapping_sub(1)) == "second";
+        let counted =
+            matches!(word(end), "to" | "from") && word(end + 1) == "the" && word(end.wrapping_sub(1)) == "second";
         if end == from + NAME_WITHIN || ends(&end) && !counted && !is_of_zone(reading, end) {
             return compass_road(reading, from);
         }
         let noun = word(end);
         let lane = matches!(noun, "lane" | "lanes" | "line" | "lines" | "divider" | "roadway" | "road" | "street");
+        let lane = lane || noun == "centerline";
         if lane || is_beside(noun) && word(end + 1) != "lane" && !is_of_zone(reading, end + 1) {
             break end;
         }
@@ -117,7 +152,8 @@ fn region(reading: &Reading<'_>, from: usize) -> Option<Named> {
     let names = |any: &[&str]| (from..=noun).any(|at| any.contains(&word(at)));
     let end = noun + 1 + usize::from(word(noun) == "lane" && matches!(word(noun + 1), "line" | "lines" | "divider"));
     let beside = (from..=noun).any(|at| is_beside(word(at)));
-    let over = names(&["oncoming", "opposing", "opposite", "yellow", "centerline", "divider"])
+    let over = names(&["oncoming", "opposing", "opposite", "centerline", "divider"])
+        || (from..=noun).any(|at| is_yellow_line(reading, at))
         || names(&["center"]) && names(&["two", "turn", "line", "lines"]);
     let way = (from..noun).find_map(|at| bound(word(at)));
     let side = match (names(&["left"]), names(&["right"])) {
@@ -129,7 +165,7 @@ fn region(reading: &Reading<'_>, from: usize) -> Option<Named> {
     let owned =
         names(&["'s"]) || names(&["turn", "turning", "bus", "center", "middle", "second", "third", "same", "both"]);
     Some(match way {
-        _ if beside => (Region::Beside, end),
+        _ if beside => (Region::Beside(side), end),
         _ if over => (Region::Over, end),
         Some(way) => (Region::Way(way), end),
         None => (Region::Lane { side: side.filter(|_| adjacent), other: adjacent || owned }, end),
@@ -174,18 +210,50 @@ fn told_of<'a>(reading: &'a Reading<'_>, at: usize) -> Option<&'a Frame> {
         .or_else(|| own().min_by_key(|frame| frame.first))
 }
 
+/// "stopped as a man was halfway across the lane", "stood with a car partly in the lane beside it": whether somebody else is named between who
+/// does what is told last and these words, in the same breath.
+fn is_of_another(reading: &Reading<'_>, frame: &Frame, at: usize) -> bool {
+    let tokens = &reading.story.tokens;
+    let somebody = |meaning| {
+        let alive = |kind: Kind| kind.is_vehicle() || !matches!(kind.group(), KindGroup::Object);
+        matches!(meaning, Meaning::Kind(kind) if alive(kind))
+    };
+    let names = |at: usize| {
+        let found = Lexicon::get().longest(tokens, at, somebody);
+        // "with the rear of the vehicle partly in the lane": its own.
+        let own = matches!((word(reading, at.wrapping_sub(1)), word(reading, at)), ("the", "vehicle"));
+        found.is_some_and(|found| !own && !word(reading, at + found.length).starts_with("lane"))
+    };
+    let breath = (frame.end..at).rev().take_while(|&at| !matches!(word(reading, at), "," | "and" | "while" | "but"));
+    breath.into_iter().any(names)
+}
+
+/// "and its rear was partially in the lane".
+fn was_so(reading: &Reading<'_>, at: usize) -> bool {
+    matches!(word(reading, at.wrapping_sub(1)), "was" | "were")
+}
+
 /// What somebody did last before these words; nothing of what takes it across the road, or of whose front alone is told in a lane, which is one
 /// that it comes to.
 fn act_of(reading: &Reading<'_>, (at, end): (usize, usize), actor: Actor) -> Option<Act> {
     let frame = told_of(reading, at)?;
     let own = |other: &&Frame| other.who == Some(actor) && other.sentence == frame.sentence && other.first <= at + 1;
     let acts = reading.story.frames.iter().filter(own).filter(|frame| frame.act().is_some() && !frame.negated);
-    let last = acts.max_by_key(|frame| frame.first).or(Some(frame).filter(|frame| frame.first > at))?;
+    let last = acts.clone().max_by_key(|frame| frame.first).or(Some(frame).filter(|frame| frame.first > at))?;
+    // "stopped, straddling two lanes": it stands so.
+    let stood = acts.filter(|frame| frame.first < at).max_by_key(|frame| frame.first);
+    let stood = stood.filter(|frame| last.first >= at && frame.act().is_some_and(stands));
+    let last = stood.unwrap_or(last);
     let across =
         |word: &str| word.starts_with("perpendicular") || matches!(word, "sideways" | "driveway" | "intersection");
     let front = (last.first..at).any(|at| word(reading, at) == "front" && word(reading, at + 1) == "of");
     let across = front || (last.first..end).any(|at| across(word(reading, at)));
     last.act().filter(|act| ALONG.contains(act) && !across)
+}
+
+/// What leaves somebody standing.
+const fn stands(act: Act) -> bool {
+    matches!(act, Act::Hold | Act::Stop | Act::Park | Act::PullOver)
 }
 
 /// What somebody does along a road.
@@ -199,12 +267,10 @@ fn line(
     act: Act,
     (first, second): (Region, Option<Region>),
 ) -> Option<LaneLine> {
-    // "and its rear was partially in the lane": so it stood.
-    let was = act == Act::Drift && matches!(word(reading, at.wrapping_sub(1)), "was" | "were");
-    let stands = was || matches!(act, Act::Hold | Act::Stop | Act::Park | Act::PullOver);
+    let stands = stands(act) || act == Act::Drift && was_so(reading, at);
     Some(match (first, second) {
         (Region::Over, _) | (_, Some(Region::Over)) => LaneLine::Centre,
-        (Region::Beside, _) | (_, Some(Region::Beside)) => LaneLine::Edge,
+        (Region::Beside(_), _) | (_, Some(Region::Beside(_))) => LaneLine::Edge,
         (Region::Way(one), Some(Region::Way(other))) if one.eighths_to(other) == 4 => LaneLine::Centre,
         (_, Some(_)) => LaneLine::Lanes,
         (Region::Lane { other: true, .. }, None) if frame.who == Some(SUBJECT) || !at_kerb(reading, at) => {
@@ -227,18 +293,23 @@ fn changes(reading: &Reading<'_>, frame: &Frame) -> bool {
     frame.who.is_some_and(|who| reading.before(who).any(|(_, other)| other.act() == Some(Act::LaneChange)))
 }
 
-/// On which side of its own lane the line is: of who reaches into the lane beside it.
+/// On which side of its own lane the line is: of who reaches into the lane beside it, or beside the road.
 fn side(line: LaneLine, first: Region, second: Option<Named>) -> Option<LeftRight> {
     match (line, first) {
         (LaneLine::Lanes, Region::Lane { side, .. }) if second.is_none() => side,
+        (LaneLine::Edge, Region::Beside(side)) => side,
+        (LaneLine::Edge, _) => match second {
+            Some((Region::Beside(side), _)) => side,
+            _ => None,
+        },
         _ => None,
     }
 }
 
-/// When its body is over the line: of who drives so, from the start.
-const fn when(act: Act) -> AstrideWhen {
+/// When its body is over the line: of who drives so, from the start; of who drifts, only when they touch.
+fn when(act: Act, was: bool) -> AstrideWhen {
     match act {
-        Act::Stop | Act::PullOver | Act::Hold | Act::Park | Act::Drift => AstrideWhen::Stop,
+        _ if stands(act) || act == Act::Drift && was => AstrideWhen::Stop,
         Act::Follow | Act::Slow | Act::Pass => AstrideWhen::Start,
         _ => AstrideWhen::Contact,
     }

@@ -53,7 +53,7 @@ pub(super) fn controls(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<Control>
                 || (1..4).any(|back| before(back) == "have" && before(back + 1) == "not");
             // "hit it at a red light", and not "hit it on a red light".
             let there = !struck || (1..4).any(|back| before(back) == "at");
-            if none && !frame.negated || !there {
+            if none && !frame.negated || !there || is_lamp(reading, (at, length)) {
                 continue;
             }
             // "awaiting a green light": it is red.
@@ -105,6 +105,21 @@ pub(super) fn controls(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<Control>
         all.push(reading.told(Control { device: ControlDevice::Signal, state: Some(state), obeyed: None }, first, end));
     }
     all
+}
+
+/// "a truck with a broken stop light", "the stop light of a van": a lamp of that.
+pub(super) fn is_lamp(reading: &Reading<'_>, (at, length): (usize, usize)) -> bool {
+    let tokens = &reading.story.tokens;
+    let word = |at: usize| tokens.get(at).map_or("", |token| token.text.as_str());
+    let vehicle = |at: usize| {
+        let kind = |meaning| matches!(meaning, Meaning::Kind(kind) if kind.is_vehicle());
+        Lexicon::get().longest(tokens, at, kind).is_some()
+    };
+    let article = usize::from(matches!(word(at + length + 1), "a" | "an" | "the"));
+    let of = word(at + length) == "of" && vehicle(at + length + 1 + article);
+    let with = (1..5).any(|back| back < at && word(at - back) == "with" && vehicle(at - back - 1));
+    let broken = at > 0 && matches!(word(at - 1), "broken" | "faulty" | "defective");
+    word(at) == "stop" && matches!(word(at + 1), "light" | "signal") && (of || with || broken)
 }
 
 /// "slowed for a red light but did not stop and entered the intersection": what it does behind this frame.
@@ -234,14 +249,39 @@ fn of_those_ahead(reading: &Reading<'_>, all: &mut Vec<Fact<Control>>, turned: O
         who != SUBJECT && story.world.actors[who].relations.iter().any(|(relation, _)| *relation == Relation::Ahead)
     };
     let signal = |control: &Fact<Control>| control.value.device == ControlDevice::Signal;
+    // "stopped for a dog": what it stopped for is no light.
+    let own_cause = |number: usize, who: Option<Actor>| {
+        let (first, end) = reading.window(number);
+        let shared = |at: usize| {
+            let near = (at + 1..at + 5).map(word);
+            near.into_iter().any(|word| {
+                matches!(
+                    word,
+                    "light" | "signal" | "traffic" | "queue" | "red" | "them" | "stopped" | "vehicles" | "cars"
+                )
+            })
+        };
+        let cause = |at: usize| matches!(word(at), "for" | "because" | "due" | "avoid") && !shared(at);
+        story.frames[number].object.is_none_or(|object| Some(object) != who) && (first..end).any(cause)
+    };
     for (number, frame) in story.frames.iter().enumerate().filter(|(number, _)| !reading.is_after(*number)) {
-        let stops_behind =
-            |next: &Frame| next.who == Some(SUBJECT) && stands(next) && next.sentence <= frame.sentence + 1;
-        let followed = story.frames[number + 1..].iter().take(4).any(stops_behind);
+        let stops_behind = |(number, next): (usize, &Frame)| {
+            let near = next.who == Some(SUBJECT) && stands(next) && next.sentence <= frame.sentence + 1;
+            near && !own_cause(number, frame.who)
+        };
+        let followed = story.frames.iter().enumerate().skip(number + 1).take(4).any(stops_behind);
         if !(frame.who.is_some_and(ahead) && stands(frame) && followed) || all.iter().any(signal) {
             continue;
         }
         let (first, end) = reading.window(number);
+        // "at a red light at the next intersection", "on the cross street": none of its own.
+        let elsewhere = |at: usize| {
+            let cross = word(at) == "cross" && matches!(word(at + 1), "street" | "road" | "traffic");
+            cross || word(at) == "next" && !matches!(word(at + 1), "to" | "lane")
+        };
+        if (first..end).any(elsewhere) {
+            continue;
+        }
         let light = (first..end).find_map(|at| {
             let words: Vec<&str> = (at..(at + 4).min(end)).map(word).collect();
             named(&words).map(|(device, state, length)| (at, device, state, length))

@@ -33,7 +33,7 @@ mod whereabouts;
 
 use crate::chunk::Piece;
 use crate::frame::{Frame, Story, story};
-use crate::lexicon::{Form, Sense};
+use crate::lexicon::{Form, Lexicon, Meaning, Sense};
 use crate::world::{Actor, Own, SUBJECT, is_no_passenger_vehicle};
 use contact::Contacts;
 use recrash_model::account::{
@@ -561,7 +561,9 @@ fn door(reading: &Reading<'_>) -> Option<Fact<Striker>> {
         let words = &reading.story.tokens[..reading.story.sentences[frame.sentence].end];
         let doors = (0..words.len()).filter(|at| matches!(words[*at].text.as_str(), "door" | "doors"));
         let states = |at: usize| words[at + 1..].iter().take(STANDS_WITHIN).take_while(|token| token.text != ",");
-        doors.into_iter().any(|at| states(at).any(|token| matches!(token.text.as_str(), "open" | "ajar")))
+        let own = owner_of_door(frame) == Some(SUBJECT);
+        let open = |at: usize| states(at).any(|token| matches!(token.text.as_str(), "open" | "ajar"));
+        doors.into_iter().any(|at| open(at) && is_door_of_subject(reading, at).is_none_or(|of| of == own))
     };
     // "and the door swung into the AV".
     let swings = |frame: &Frame| {
@@ -590,6 +592,27 @@ fn door(reading: &Reading<'_>) -> Option<Fact<Striker>> {
     let opens = frame.act() == Some(Act::OpenDoor);
     let (first, end) = if opens { entry::of_door(reading, frame) } else { (frame.first, frame.end) };
     Some(reading.told(value, first, end))
+}
+
+/// Whose door takes part in a contact.
+fn owner_of_door(frame: &Frame) -> Option<Actor> {
+    let door = |piece: &Option<Piece>| piece.as_ref().is_some_and(|piece| piece.door);
+    if door(&frame.with) { frame.who } else { frame.object }
+}
+
+/// "A van with its rear doors open", "the AV's door stood open": whether the door at this token is the subject vehicle's, by who is named last
+/// before it in the sentence.
+fn is_door_of_subject(reading: &Reading<'_>, at: usize) -> Option<bool> {
+    let story = &reading.story;
+    let sentence = story.sentences.iter().find(|sentence| (sentence.first..sentence.end).contains(&at))?;
+    let named = |meaning| match meaning {
+        Meaning::Subject => true,
+        Meaning::Kind(kind) => kind.is_vehicle(),
+        _ => false,
+    };
+    let mut before = (sentence.first..at).rev();
+    let found = before.find_map(|at| Lexicon::get().longest(&story.tokens, at, named))?;
+    Some(found.meaning == Meaning::Subject)
 }
 
 /// "Its passengers opened the doors and got out. The van passed, and its flank touched it": the crash is none of a door where another came

@@ -52,7 +52,7 @@ pub(super) fn is_one_of_the_two(
 
 /// "Officers were directing traffic. A van set off when one of the officers waved": one of those told of before, of whom no more is told.
 pub(super) fn is_one_of_those(known: &Known, acts: &[ActFact]) -> bool {
-    known.group.is_some() && acts.iter().all(|fact| fact.after_contact)
+    known.group.is_some() && known.as_group && acts.iter().all(|fact| fact.after_contact)
 }
 
 /// Whether the headline counts both vehicles beside the subject vehicle.

@@ -151,7 +151,9 @@ fn stopped_within(reading: &Reading<'_>, at: usize) -> Option<(Range<usize>, Opt
         ("part", "way", "through" | "into") => at + 3,
         _ => return None,
     };
-    let turn = (into + 1..into + 4).find(|&at| word(at) == "turn")?;
+    // "partway into a left turn lane" is no turn.
+    let turn = (into + 1..into + 4)
+        .find(|&at| word(at) == "turn" && !matches!(word(at + 1), "lane" | "lanes" | "pocket" | "bay"))?;
     let side = (into..turn).find_map(|at| match word(at) {
         "left" => Some(LeftRight::Left),
         "right" => Some(LeftRight::Right),

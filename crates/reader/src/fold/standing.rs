@@ -4,7 +4,7 @@ use super::acts::{
     avoids, begins_to_go_on, drives_already, gains_speed, in_headline, leaves_rest, names_mode, sets_off_at_green,
     tells_where,
 };
-use super::controls::{in_its_queue, shown};
+use super::controls::{in_its_queue, is_lamp, shown};
 use super::lanes::waits_to_change;
 use super::speeds::is_of_last_contact;
 use super::{Reading, flashback, nominal};
@@ -333,12 +333,13 @@ pub(super) fn reasons(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<StandReas
                 matches!(next.text.as_str(), "car" | "cars" | "vehicle" | "vehicles" | "van" | "sedan" | "suv")
             });
             let place = place || car && reason == StandReason::PickupDropoff;
-            let green = reason == StandReason::RedLight && shows_another_colour(reading, begins + at, length);
+            let no_red = |at| is_lamp(reading, (at, length)) || shows_another_colour(reading, at, length);
+            let not_red = reason == StandReason::RedLight && no_red(begins + at);
             // "behind a van that was letting out passengers": why the van stood.
             let of_queue = begins + at >= own && !matches!(reason, StandReason::RedLight | StandReason::Queue);
             let of_queue = of_queue || is_of_another(tokens, begins + at, reason);
             if !place
-                && !green
+                && !not_red
                 && !of_queue
                 && !all.iter().any(|known| known.value == reason)
                 && !named.iter().any(within)

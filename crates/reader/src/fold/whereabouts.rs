@@ -110,7 +110,7 @@ fn queue_waited_for(clues: &Clues<'_>) -> Option<Fact<Origin>> {
     let across = |token: &Token| {
         matches!(
             token.text.as_str(),
-            "across" | "crossing" | "oncoming" | "opposing" | "opposite" | "adjacent" | "next"
+            "across" | "crossing" | "oncoming" | "opposing" | "opposite" | "adjacent" | "next" | "on"
         )
     };
     let tokens = &reading.story.tokens;
@@ -119,7 +119,15 @@ fn queue_waited_for(clues: &Clues<'_>) -> Option<Fact<Origin>> {
         let slows = frame.sense == Sense::Yield || matches!(frame.act(), Some(Act::Slow | Act::Stop | Act::Hold));
         frame.object == Some(actor) && slows && frame.happened()
     };
-    let stays = !reading.did(SUBJECT, Act::Turn);
+    // "was pulling out of a driveway", "waited at a stop sign", "to turn left": those cross its way.
+    let leaves = [Act::Turn, Act::PullOut, Act::Enter, Act::LaneChange].iter().any(|act| reading.did(SUBJECT, *act));
+    let sentence = reading.story.sentences.iter().find(|sentence| (sentence.first..sentence.end).contains(&from));
+    let told = sentence.map_or(from..from, |sentence| sentence.first..from);
+    let ways = |pair: &[Token]| {
+        let (one, other) = (pair[0].text.as_str(), pair[1].text.as_str());
+        matches!((one, other), ("stop" | "yield", "sign")) || one == "to" && matches!(other, "turn" | "enter" | "merge")
+    };
+    let stays = !leaves && !tokens[told].windows(2).any(ways);
     (stays && !elsewhere && reading.before(SUBJECT).any(waits)).then(|| reading.told(Origin::Ahead, from, end))
 }
 
@@ -336,8 +344,14 @@ fn behind_partner(reading: &Reading<'_>, actor: Actor) -> Option<Fact<Origin>> {
 fn in_queue(clues: &Clues<'_>) -> Option<Fact<Origin>> {
     let (from, end) = queue_of(clues.reading, clues.actor)?;
     let held = held_in(clues.reading, SUBJECT, from, end);
-    held.then(|| clues.reading.told(Origin::Ahead, from, end))
+    // "waited, yielding to a line of cars": it stands in none.
+    let before = &clues.reading.story.tokens[from.saturating_sub(YIELDS_WITHIN)..from];
+    let yields = before.iter().any(|token| token.text.starts_with("yield"));
+    (held && !yields).then(|| clues.reading.told(Origin::Ahead, from, end))
 }
+
+/// To what somebody yields stands so near behind the verb. [tokens]
+const YIELDS_WITHIN: usize = 3;
 
 /// The tokens of somebody who is called a queue: "a queue of traffic".
 fn queue_of(reading: &Reading<'_>, actor: Actor) -> Option<(usize, usize)> {
@@ -437,10 +451,17 @@ fn comes_along_its_road(clues: &Clues<'_>, place: Option<Origin>) -> Option<Fact
         && !reading.before(actor).any(|(_, frame)| stands(frame));
     let is_other_road = match place? {
         Origin::Beside { .. } => fact.value == Origin::Opposite && !turned,
-        Origin::Opposite => matches!(fact.value, Origin::Cross { .. }),
+        Origin::Opposite => matches!(fact.value, Origin::Cross { .. }) && !is_oncoming(reading, actor),
         _ => false,
     };
     (drives && is_other_road).then_some(fact)
+}
+
+/// "an oncoming van": so it is called, whatever way it is told to go.
+fn is_oncoming(reading: &Reading<'_>, actor: Actor) -> bool {
+    let named = reading.story.world.actors[actor].kind_tokens;
+    let oncoming = |token: &Token| token.text == "oncoming";
+    named.is_some_and(|(first, end)| reading.story.tokens[first..end].iter().any(oncoming))
 }
 
 /// From where somebody with this direction meets one with another.

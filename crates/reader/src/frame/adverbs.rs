@@ -306,7 +306,11 @@ fn leaves_a_queue(frames: &[Frame], number: usize, tokens: &[Token], sentences: 
     let waits = |other: &Frame| {
         let stands = matches!(other.act(), Some(Act::Stop | Act::Hold)) && other.happened();
         let behind = |(relation, to): &(Relation, Option<usize>)| *relation == Relation::Behind && *to == frame.who;
-        other.who == Some(SUBJECT) && stands && other.relations.iter().any(behind)
+        // "behind a truck at the side of the street": out of there.
+        let aside = ["curb", "kerb", "parking", "side", "shoulder", "parked", "stall", "driveway", "lot"];
+        let said = &tokens[other.first..sentences[other.sentence].end];
+        let aside = said.iter().any(|token| aside.contains(&token.text.as_str()));
+        other.who == Some(SUBJECT) && stands && !aside && other.relations.iter().any(behind)
     };
     let parked = before.iter().any(|other| other.who == frame.who && other.sense == Sense::Parked);
     let leaves = frame.act() == Some(Act::PullOut) && frame.out_of.is_none() && frame.who.is_some();

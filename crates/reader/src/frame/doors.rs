@@ -69,11 +69,11 @@ fn one_of_ours(frame: &Frame, tokens: &[Token], sentences: &[Sentence]) -> bool 
     rest.iter().any(|word| people(word)) && !rest.contains(&"of")
 }
 
-/// "the driver of one of them", of cars in a row: whose doors are no passenger's of ours.
+/// "the driver of one of them", "of one of those", of cars in a row: whose doors are no passenger's of ours.
 fn one_of_them(frame: &Frame, tokens: &[Token], sentences: &[Sentence]) -> bool {
     let from = sentences[frame.sentence].first.max(frame.first.saturating_sub(6));
-    let mut words = tokens[from..frame.first].windows(4);
-    words.any(|four| four.iter().map(|token| token.text.as_str()).eq(["of", "one", "of", "them"]))
+    let words: Vec<&str> = tokens[from..frame.first].iter().map(|token| token.text.as_str()).collect();
+    words.windows(4).any(|four| matches!(four, ["of", "one", "of", "them" | "the" | "those" | "these"]))
 }
 
 /// Somebody on foot who was brought on by these words alone.

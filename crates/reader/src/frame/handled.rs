@@ -52,7 +52,7 @@ pub(super) fn turns_out_to_be(parser: &Parser<'_>, verb: &Spoken<'_>, _carry: &C
     (matches!(verb.sense, Sense::Act(Act::Turn)) && be).then_some(Sense::Other)
 }
 
-/// "its front wheel fell into a ditch": it met that. "The wheel fell off": it met nothing.
+/// "its front wheel fell into a ditch": it met that, where the story tells of no contact behind it. "The wheel fell off": it met nothing.
 pub(super) fn drops_into_a_hole(parser: &Parser<'_>, verb: &Spoken<'_>, carry: &Carry) -> Option<Sense> {
     let own = carry.subject.as_ref().is_some_and(|subject| subject.actor == SUBJECT);
     let drops = verb.sense == Sense::Act(Act::Fall) && own;
@@ -60,7 +60,12 @@ pub(super) fn drops_into_a_hole(parser: &Parser<'_>, verb: &Spoken<'_>, carry: &
     let before = &parser.tokens[placed.first.saturating_sub(2)..placed.first];
     let wheel = before.iter().any(|token| matches!(token.text.as_str(), "wheel" | "wheels" | "tire" | "tires"));
     let into = |at: usize| parser.tokens.get(at).is_some_and(|token| token.text == "into");
-    (drops && wheel && (into(placed.end) || into(placed.end - 1))).then_some(Sense::Contact)
+    let touches = |pair: &[Token]| match (pair[0].text.as_str(), pair[1].text.as_str()) {
+        ("made" | "making", "contact") => true,
+        (word, _) => matches!(word, "struck" | "hit" | "collided" | "scraped" | "clipped" | "ended"),
+    };
+    let later = parser.tokens[placed.end..].windows(2).any(touches);
+    (drops && wheel && !later && (into(placed.end) || into(placed.end - 1))).then_some(Sense::Contact)
 }
 
 /// "took off their seatbelts", "turned on its hazard lights": nobody moved.

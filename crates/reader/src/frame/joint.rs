@@ -29,7 +29,14 @@ impl Parser<'_> {
         });
         if joint == Joint::And && (into || aside) && carry.frame.is_some() {
             (carry.preposition, carry.relation) = (None, None);
-            if aside {
+            // "forward and to the right at the fork": a way.
+            let fork = |at: usize| {
+                self.tokens.get(at).is_some_and(|token| {
+                    matches!(token.text.as_str(), "fork" | "split" | "intersection" | "junction" | "corner" | "lane")
+                })
+            };
+            let end = behind[0].end;
+            if aside && !(end..end + 3).any(fork) {
                 self.goes_aside(carry);
             }
             return;
@@ -188,7 +195,9 @@ impl Parser<'_> {
         let Some(frame) = carry.frame.map(|frame| &self.frames[frame]) else { return false };
         let between = self.tokens[frame.first..frame.end].iter().any(|token| token.text == "between");
         let does = matches!(behind.get(1).map(|placed| &placed.chunk), Some(Chunk::Verb(..)));
-        between && does && frame.object.is_some() && behind[0].first == frame.end + 1
+        // "between two parked cars and": both are named.
+        let both = frame.object.is_none_or(|object| self.world.actors[object].several);
+        between && does && !both && behind[0].first == frame.end + 1
     }
 
     /// "As it slowed, there was a van passing": a clause of its own, about who is named behind it.

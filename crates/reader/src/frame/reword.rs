@@ -488,10 +488,11 @@ fn leave_in_reverse(tokens: &mut [Token]) {
     const BACKS: [&str; 5] = ["reversed", "reversing", "reverse", "backed", "backing"];
     for at in 0..tokens.len().saturating_sub(2) {
         let up = usize::from(tokens[at + 1].text == "up");
-        let Some([first, second]) = tokens.get(at + up + 1..at + up + 3) else { continue };
+        let Some([first, second, third]) = tokens.get(at + up + 1..at + up + 4) else { continue };
+        let place = matches!(third.text.as_str(), "a" | "an" | "the" | "its" | "their" | "parking" | "driveway");
         let to = match (first.text.as_str(), second.text.as_str()) {
             ("while" | "when", "unparking") => ["completely", "completely"],
-            ("while" | "when", "leaving" | "exiting" | "departing") => ["out", "of"],
+            ("while" | "when", "leaving" | "exiting" | "departing") if place => ["out", "of"],
             _ => continue,
         };
         if BACKS.contains(&tokens[at].text.as_str()) {

@@ -579,7 +579,14 @@ fn moves_a_little_aside(parser: &Parser<'_>, verb: &Spoken<'_>, _carry: &Carry) 
     let far = how_far(&word);
     // "proceeded a short distance to the left of the van": that is where it was.
     let there = word(far + 3) == "of";
-    (moves && far > 0 && leads_aside(&|at| word(far + at)) && !there).then_some(Sense::Act(Act::Drift))
+    // "proceeded slowly to the left turn lane".
+    let lane = (far + 3..far + 6).any(|at| matches!(word(at), "lane" | "lanes"));
+    // "pulled forward slowly to the left": it set off.
+    let within = &parser.tokens[verb.placed().first..verb.placed().end];
+    let on = within.iter().any(|token| matches!(token.text.as_str(), "forward" | "ahead" | "up"));
+    let sets_off = on && verb.sense == Sense::Act(Act::SetOff);
+    (moves && far > 0 && leads_aside(&|at| word(far + at)) && !(there || lane || sets_off))
+        .then_some(Sense::Act(Act::Drift))
 }
 
 /// "slightly", "a little", "a few feet": so many words tell how far.

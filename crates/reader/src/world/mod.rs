@@ -57,6 +57,8 @@ pub struct Known {
     pub acted: bool,
     /// The group that it is one of.
     pub group: Option<Actor>,
+    /// Where it is, is where its group is, of itself nothing is told.
+    pub as_group: bool,
     /// It was called a tractor.
     pub tractor: bool,
     /// It was called a passenger vehicle.
@@ -81,6 +83,10 @@ impl Known {
     /// Notes where it is, once.
     pub fn place(&mut self, relation: Relation, sentence: usize) {
         if !self.relations.iter().any(|(known, _)| *known == relation) {
+            // "Two cars were ahead. One of them was on its left": there.
+            if std::mem::take(&mut self.as_group) {
+                self.relations.clear();
+            }
             self.relations.push((relation, sentence));
         }
     }
@@ -175,7 +181,7 @@ impl World {
             known.heading = known.heading.or(of.heading);
             known.group = Some(group);
             if known.relations.is_empty() {
-                known.relations = of.relations;
+                (known.relations, known.as_group) = (of.relations, true);
             }
             if noun.kind == Some(Kind::Vehicle) && known.kind.is_none_or(|kind| kind == Kind::Vehicle) {
                 (known.kind, known.kind_tokens) = (of.kind, of.kind_tokens);
