@@ -25,6 +25,8 @@ mod tests {
     use crate::tuning::TuneLog;
     use serde::de::DeserializeOwned;
 
+    type Read = fn(&str) -> String;
+
     fn told<T: DeserializeOwned>(format: &str) -> String {
         let read: Result<T, _> = serde_json::from_value(serde_json::json!({ "format": format }));
         read.err().map(|error| error.to_string()).unwrap_or_default()
@@ -32,7 +34,7 @@ mod tests {
 
     #[test]
     fn every_document_of_a_suite_is_refused_by_a_format_that_is_not_its_own() {
-        let all: [(&str, fn(&str) -> String); 6] = [
+        let all: [(&str, Read); 6] = [
             (crate::narrative::NARRATIVE_FORMAT, told::<Narrative>),
             (crate::account::ACCOUNT_FORMAT, told::<Account>),
             (crate::account::ACCOUNTS_FORMAT, told::<AccountSet>),
