@@ -515,6 +515,7 @@ mod tests {
         }
         assert!(on_lanes > 1000 && beside > 100, "{on_lanes} {beside}");
     }
+
     /// Drawn for each of them, and of no use where a simulator takes one for all.
     #[test]
     fn who_drives_by_metadrive_s_policy_has_the_timer_of_its_placement_in_both_simulators() {

@@ -592,19 +592,24 @@ fn a_cap_on_tokens_holds_where_the_server_does_not_count() {
     assert!((40_000..60_000).contains(&tokens) && tokens as usize > sent / 3, "{tokens} tokens of {sent} bytes");
 }
 
+/// What a run says, and how long it takes, that asks a model at an address which gives no answer. The records are read before anybody is asked.
+fn asked_in_vain(folder: &Folder, base_url: &str) -> (String, Duration) {
+    recrash(&["records", "--quiet", "--records", FEW, "--out"]).arg(folder.suite()).assert().success();
+    let begun = Instant::now();
+    let arguments =
+        ["run", "--quiet", "--agent", "m", "--base-url", base_url, "--records", FEW, "--budget", "3", "--out"];
+    let output = recrash(&arguments).arg(folder.suite()).output().unwrap();
+    assert_eq!(output.status.code(), Some(3), "{}", shown(&output));
+    (shown(&output), begun.elapsed())
+}
+
 #[test]
 fn nobody_at_the_address_is_told_within_seconds() {
     let folder = Folder::new();
     let nobody = std::net::TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap();
     let base_url = format!("http://{nobody}/v1");
-    // The records are read before anybody is asked.
-    recrash(&["records", "--quiet", "--records", FEW, "--out"]).arg(folder.suite()).assert().success();
-    let begun = Instant::now();
-    let arguments =
-        ["run", "--quiet", "--agent", "m", "--base-url", &base_url, "--records", FEW, "--budget", "3", "--out"];
-    let output = recrash(&arguments).arg(folder.suite()).output().unwrap();
-    assert_eq!(output.status.code(), Some(3), "{}", shown(&output));
-    assert!(begun.elapsed() < Duration::from_secs(6), "{:?}", begun.elapsed());
+    let (_, took) = asked_in_vain(&folder, &base_url);
+    assert!(took < Duration::from_secs(6), "{took:?}");
 }
 
 /// A server that answers nobody: whoever comes behind the few it keeps waiting is not even refused.
@@ -631,14 +636,9 @@ fn an_address_that_answers_nothing_is_told_within_seconds() {
     let mut port = String::new();
     BufReader::new(silent.stdout.as_mut().unwrap()).read_line(&mut port).unwrap();
     let base_url = format!("http://127.0.0.1:{}/v1", port.trim());
-    recrash(&["records", "--quiet", "--records", FEW, "--out"]).arg(folder.suite()).assert().success();
-    let begun = Instant::now();
-    let arguments =
-        ["run", "--quiet", "--agent", "m", "--base-url", &base_url, "--records", FEW, "--budget", "3", "--out"];
-    let output = recrash(&arguments).arg(folder.suite()).output().unwrap();
-    assert_eq!(output.status.code(), Some(3), "{}", shown(&output));
-    assert!(shown(&output).contains("no connection within 4 s"), "{}", shown(&output));
-    assert!(begun.elapsed() < Duration::from_secs(9), "{:?}", begun.elapsed());
+    let (told, took) = asked_in_vain(&folder, &base_url);
+    assert!(told.contains("no connection within 4 s"), "{told}");
+    assert!(took < Duration::from_secs(9), "{took:?}");
     // Its input ends, and so does it.
     drop(silent.stdin.take());
     silent.wait().unwrap();
