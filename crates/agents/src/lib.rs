@@ -11,7 +11,6 @@
 //! What this crate does **not** do: it simulates nothing, measures nothing and searches nothing. Narratives are untrusted
 //! text: they are matched against patterns, never followed.
 
-mod account;
 mod agreement;
 mod contradiction;
 mod expectation;
@@ -20,7 +19,6 @@ pub mod llm;
 mod parameters;
 mod rules;
 
-pub use account::account_of;
 pub use agreement::disagreement;
 pub use contradiction::narrative_contradictions;
 pub use expectation::expectation;

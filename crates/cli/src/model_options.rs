@@ -1,7 +1,7 @@
 //! Options of the roles, and of how language models are asked.
 
 use clap::{Args, ValueEnum};
-use recrash_pipeline::{AnswerMode, Caps, Cast, ModelAccess};
+use recrash_pipeline::{AnswerMode, Caps, Cast, ModelAccess, Reads};
 use std::path::PathBuf;
 
 /// Who plays which role, and how models are asked. A model is named as its provider names it.
@@ -31,9 +31,21 @@ pub struct ModelArgs {
     /// says. [default: 3]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(0..=20))]
     pub repairs: Option<u16>,
+    /// Which incidents a model that paraphrases reads, in a suite that goes by accounts. [default: unread]
+    #[arg(long, value_name = "WHICH", value_enum)]
+    pub model_reads: Option<ModelReads>,
     /// How models are asked.
     #[command(flatten)]
     pub access: AccessArgs,
+}
+
+/// Which incidents a model reads.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum ModelReads {
+    /// Those that the built-in reader did not read whole.
+    Unread,
+    /// All of them: the model corrects what the built-in reader made of each.
+    All,
 }
 
 /// How models are asked.
@@ -93,6 +105,11 @@ impl ModelArgs {
             tune: self.tune.clone().unwrap_or(base.tune),
             rounds: self.rounds.map_or(base.rounds, usize::from),
             repairs: self.repairs.map_or(base.repairs, usize::from),
+            reads: match self.model_reads {
+                None => base.reads,
+                Some(ModelReads::Unread) => Reads::Unread,
+                Some(ModelReads::All) => Reads::All,
+            },
         }
     }
 }

@@ -28,7 +28,7 @@ pub use error::{Choice, PipelineError};
 pub use files::output::{Begun, Output, Outputs};
 pub use files::paths::quoted;
 pub use files::store::{Store, WriteFile, remove_unfinished};
-pub use models::cast::{AgentLog, Cast};
+pub use models::cast::{AgentLog, Cast, Reads};
 pub use models::ledger::{LedgerReport, ModelSum, Sum as LedgerSum, ledger};
 pub use models::{AnswerMode, ModelAccess};
 pub use options::{Options, RecordSource};

@@ -8,7 +8,6 @@
 mod access;
 mod answers;
 mod batch;
-mod cues;
 mod extract;
 #[cfg(feature = "live")]
 mod fault;
@@ -212,8 +211,11 @@ impl LanguageModel<'_> {
         self.read_until(brief, base, Ok)
     }
 
-    /// The same, until `accept` takes the account.
-    fn read_until<T>(
+    /// The same, until `accept` takes the account; why it does not goes back to the model.
+    ///
+    /// # Errors
+    /// [`AgentError`], where the model gives no usable answer.
+    pub fn read_until<T>(
         &self,
         brief: &Brief,
         base: &Account,

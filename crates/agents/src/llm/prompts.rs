@@ -2,6 +2,7 @@
 //! first, so that providers can keep it in their caches.
 
 use crate::llm::question::{Role, sha256};
+use crate::llm::reading::AccountAnswer;
 use crate::{AgentError, Brief};
 use minijinja::value::Serde;
 use minijinja::{Environment, context};
@@ -21,6 +22,8 @@ use std::collections::BTreeSet;
 const MOST_REPORTS: usize = 6;
 /// Longest narrative that is sent. [characters]
 const MAX_NARRATIVE: usize = 4_000;
+/// Longest draft of an account that is sent. [characters]
+const MAX_DRAFT: usize = 24_000;
 
 macro_rules! files {
     ($($name:literal),* $(,)?) => { [$(($name, include_str!(concat!("../../prompts/", $name)))),*] };
@@ -87,7 +90,8 @@ pub fn paraphrase(brief: &Brief) -> Result<String, AgentError> {
     let mut seen = BTreeSet::new();
     let new = speaker.into_iter().chain(others).filter(|record| seen.insert(record.narrative.as_str()));
     let records: Vec<QuotedRecord> = new.take(MOST_REPORTS).map(QuotedRecord::new).collect();
-    paraphrase_question(brief.scenario_id, &records)
+    let draft = brief.account.map(|account| json!(AccountAnswer::of(account)));
+    paraphrase_question(brief.scenario_id, &records, &draft.unwrap_or(Value::Null))
 }
 
 /// Asks for a scenario.
@@ -140,9 +144,9 @@ pub fn answer_form(draft: &ScenarioDraft) -> Value {
     })
 }
 
-fn paraphrase_question(id: &str, records: &[QuotedRecord]) -> Result<String, AgentError> {
-    let records = minijinja::Value::from(Serde(records));
-    render("paraphrase_question.md", context! { scenario_id => id, records })
+fn paraphrase_question(id: &str, records: &[QuotedRecord], draft: &Value) -> Result<String, AgentError> {
+    let (records, draft) = (minijinja::Value::from(Serde(records)), capped(&draft.to_string(), MAX_DRAFT));
+    render("paraphrase_question.md", context! { scenario_id => id, records, draft })
 }
 
 fn design_question(id: &str, template: Template, narrative: &str) -> Result<String, AgentError> {
@@ -185,10 +189,11 @@ impl Example {
 #[derive(Deserialize)]
 struct ParaphraseExample {
     records: Vec<QuotedRecord>,
+    draft: Value,
 }
 
 fn paraphrase_example(example: &ParaphraseExample) -> Result<String, AgentError> {
-    paraphrase_question("example", &example.records)
+    paraphrase_question("example", &example.records, &example.draft)
 }
 
 #[derive(Deserialize)]
@@ -271,7 +276,11 @@ fn zones(zones: &[ContactZone]) -> String {
 
 /// Untrusted text as a prompt holds it: capped, without a line that would end a quotation.
 fn quotable(text: &str) -> String {
-    text.replace("=====", "= = =").chars().filter(|c| !c.is_control() || *c == '\n').take(MAX_NARRATIVE).collect()
+    capped(text, MAX_NARRATIVE)
+}
+
+fn capped(text: &str, most: usize) -> String {
+    text.replace("=====", "= = =").chars().filter(|c| !c.is_control() || *c == '\n').take(most).collect()
 }
 
 #[derive(Serialize, Deserialize)]

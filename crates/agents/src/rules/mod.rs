@@ -34,7 +34,6 @@ pub(crate) mod staged {
 }
 
 pub(crate) use paraphrase::narrative_of;
-pub(crate) use reading::collision_of;
 
 use crate::{AgentError, Brief, Design, Feedback, Paraphrase};
 use recrash_model::Outcome;

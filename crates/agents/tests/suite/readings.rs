@@ -97,7 +97,7 @@ fn good() -> Value {
         "sv": {
             "movement": quoted("straight", "driving straight"),
             "state": quoted("moving", "driving straight"),
-            "speed": quoted(json!({"mps": 5.4, "meaning": "impact"}), "at 12 mph"),
+            "speeds": [quoted(json!({"mps": 5.4, "meaning": "impact"}), "at 12 mph")],
             "zones": [{"value": "front", "words": null, "column": "SV Contact Area"}],
         },
         "partner": {
@@ -167,7 +167,7 @@ fn every_fact_is_held_against_its_words_or_its_column() {
         ("/came_from/words", json!("came from the right"), "do not stand in the narrative"),
         ("/came_from/value", json!("behind"), "came_from.words do not say it"),
         ("/sv/movement/value", json!("left_turn"), "sv.movement.words do not say it"),
-        ("/sv/speed/value/mps", json!(12.0), "sv.speed.words do not say it"),
+        ("/sv/speeds/0/value/mps", json!(12.0), "sv.speeds[0].words do not say it"),
         ("/partner/movement/value", json!("left_turn"), "the column CP Pre-Crash Movement of 1-1/1 says otherwise"),
         ("/partner/movement/column", json!("Weather"), "Weather is no column that tells it"),
         ("/sv/zones/0/value", json!("rear"), "the column SV Contact Area of 1-1/1 says otherwise"),
@@ -190,7 +190,7 @@ fn a_poor_model_is_understood_in_four_of_five() {
     let messy =
         format!("<think>Perhaps {draft}</think>Here you are:\n```json\n// read\n{},}}\n```", &text[..text.len() - 1]);
     let formless =
-        with(&[("/crash_type", json!("crossing")), ("/sv/speed/value/mps", json!(500)), ("/report", json!(7))]);
+        with(&[("/crash_type", json!("crossing")), ("/sv/speeds/0/value/mps", json!(500)), ("/report", json!(7))]);
     let unknown = with(&[("/sv", json!({"position": 3, "zones": "front"}))]);
     let misquoted = with(&[("/came_from/words", json!("from the left side"))]);
     let conversations: [&[String]; 5] = [
@@ -208,11 +208,79 @@ fn a_poor_model_is_understood_in_four_of_five() {
     let told = scripts[1].last_told();
     for part in [
         "crash_type is \"crossing\"; it is one of",
-        "sv.speed.value.mps is 500; 60 is the most",
+        "sv.speeds[0].value.mps is 500; 60 is the most",
         "report is 7; it must be of type",
     ] {
         assert!(told.contains(part), "{part}:\n{told}");
     }
+}
+
+/// The account that these corrections make of the good one.
+fn mended(corrections: Value) -> Result<Account, String> {
+    let (record, profile, repairs) = (record(), support::paper(), Repairs::default());
+    let draft = read(&Script::new(&[good()]), 0).0.unwrap();
+    let script = Script::new(&[corrections]);
+    let records = [&record];
+    let brief = Brief { account: Some(&draft), ..support::brief("01", &records, &profile, 1) };
+    let model = LanguageModel { model: "m", answers: &script, max_repairs: 0, repairs: &repairs };
+    model.read(&brief, &draft).map_err(|error| error.to_string())
+}
+
+#[test]
+fn what_a_model_does_not_correct_stays_as_it_was() {
+    let draft = read(&Script::new(&[good()]), 0).0.unwrap();
+    assert_eq!(mended(json!({"report": "1-1/1"})).unwrap(), draft);
+    // A fact that the draft has keeps its words, whatever is quoted for it.
+    let same = json!({"report": "1-1/1", "came_from": {"value": {"cross": {"side": "left"}}}});
+    assert_eq!(mended(same).unwrap(), draft);
+    let acts = |words: &str| {
+        json!({"report": "1-1/1", "nobody_tells": ["driver", "sv.movement"], "partner": {"acts": [
+            {"act": "enter", "side": "left", "step": 2, "words": "came from the left"},
+            {"act": "run_stop", "step": 3, "words": words}]},
+            "others": [{"kind": {"value": "passenger_car", "words": "a red sedan"}, "place": {"value": "ahead", "words": "came from"}}]})
+    };
+    let refused = mended(acts("failed to stop")).unwrap_err();
+    assert!(refused.contains("others[0].place.words do not say it"), "{refused}");
+    let mut right = acts("failed to stop");
+    right["others"] = json!([]);
+    let account = mended(right).unwrap();
+    assert_eq!((&account.driver, &account.sv.movement, &account.sv.state), (&None, &None, &draft.sv.state));
+    let partner = account.partner.unwrap();
+    assert_eq!((partner.acts.len(), &partner.zones), (2, &draft.partner.unwrap().zones));
+    let mut wrong = acts("was driving straight");
+    wrong["others"] = json!([]);
+    let refused = mended(wrong).unwrap_err();
+    assert!(refused.contains("partner.acts[1].words do not say it"), "{refused}");
+    let refused = mended(json!({"report": "1-1/1", "nobody_tells": ["sv.colour"]})).unwrap_err();
+    assert!(refused.contains("sv.colour is no fact that can be taken out"), "{refused}");
+}
+
+#[test]
+fn of_another_partner_nothing_of_the_draft_stays() {
+    let other = json!({"report": "1-1/1", "another_partner": true,
+        "partner": {"kind": quoted("passenger_car", "a red sedan")}, "came_from": quoted(json!({"cross": {"side": "left"}}), "from the left")});
+    let account = mended(other).unwrap();
+    let partner = account.partner.unwrap();
+    assert!(partner.zones.is_empty() && partner.movement.is_none() && partner.kind.is_some());
+}
+
+#[test]
+fn words_that_stand_in_two_places_are_those_behind_the_act_before() {
+    let twice = "A GM test vehicle stopped for a bus, and a red sedan passed it. It drove on, and stopped for a truck.";
+    let record = CrashRecord { narrative: twice.to_owned(), ..record() };
+    let (profile, repairs, base) = (support::paper(), Repairs::default(), nothing(&record));
+    let acts = json!([{"act": "stop", "step": 1, "words": "stopped for"}, {"act": "follow", "step": 2, "words": "drove on"},
+        {"act": "stop", "step": 3, "words": "stopped for"}]);
+    let script = Script::new(&[json!({"report": "1-1/1", "sv": {"acts": acts}})]);
+    let records = [&record];
+    let brief = Brief { account: Some(&base), ..support::brief("01", &records, &profile, 1) };
+    let model = LanguageModel { model: "m", answers: &script, max_repairs: 0, repairs: &repairs };
+    let account = model.read(&brief, &base).unwrap();
+    let at = |act: usize| match &account.sv.acts[act].source {
+        recrash_model::account::Source::Words { start, .. } => *start,
+        other => panic!("{other:?}"),
+    };
+    assert_eq!((at(0), at(2)), (twice.find("stopped for").unwrap(), twice.rfind("stopped for").unwrap()));
 }
 
 #[test]
@@ -243,11 +311,17 @@ fn the_worked_examples_are_accounts_of_their_reports() {
         let mut record = support::record(template, quoted["narrative"].as_str().unwrap());
         record.id = recrash_model::record::RecordRef::try_from(quoted["id"].as_str().unwrap().to_owned()).unwrap();
         record.sv_speed_mps = quoted["sv_speed"].as_str().and_then(|speed| speed.split(' ').next()?.parse().ok());
-        let (records, base, profile, repairs) = ([&record], nothing(&record), support::paper(), Repairs::default());
-        let brief = Brief { account: Some(&base), ..support::brief("01", &records, &profile, 1) };
-        let script = Script::new(&[example["answer"].clone()]);
-        let model = LanguageModel { model: "m", answers: &script, max_repairs: 0, repairs: &repairs };
-        let account = model.read(&brief, &base).unwrap_or_else(|e| panic!("{name}: {e}"));
+        let (records, profile, repairs) = ([&record], support::paper(), Repairs::default());
+        let read = |answer: &Value, base: &Account| {
+            let brief = Brief { account: Some(base), ..support::brief("01", &records, &profile, 1) };
+            let script = Script::new(&[answer.clone()]);
+            let model = LanguageModel { model: "m", answers: &script, max_repairs: 0, repairs: &repairs };
+            model.read(&brief, base).unwrap_or_else(|e| panic!("{name}: {e}"))
+        };
+        // The draft is an account of the report, and the answer mends it.
+        let draft = read(&example["draft"], &nothing(&record));
+        let account = read(&example["answer"], &draft);
+        assert!(account != draft, "{name}");
         assert!(account.came_from.is_some() && account.striker.is_some(), "{name}");
     }
 }

@@ -26,7 +26,7 @@ pub struct EvalArgs {
     /// Who reads: reader (the accounts of recrash read), rules (those of the paper's templates), or a language model by name.
     #[arg(long, value_name = "reader|rules|MODEL", default_value = "reader")]
     pub agent: String,
-    /// Label file (CSV). [default: the built-in ones: eval/accounts.csv for the reader, else eval/labels.csv]
+    /// Label file (CSV). [default: the built-in ones: eval/labels.csv for the rules, else eval/accounts.csv]
     #[arg(long, value_name = "FILE")]
     pub labels: Option<PathBuf>,
     /// SGO crash file (CSV), or the name of a downloaded one; may be given several times. [default: the downloaded ones,

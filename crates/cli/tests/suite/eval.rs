@@ -81,17 +81,19 @@ fn wrong_labels_are_told_by_row_and_column() {
 }
 
 #[test]
-fn a_model_is_asked_by_batch_and_its_answers_are_scored() {
-    let files = files(&[DEV]);
+fn a_model_is_asked_by_batch_and_its_corrections_are_scored() {
+    let mut files = files(&[]);
+    files.labels = files.folder.path().join("accounts.csv");
+    let row = "dev,90103-311,1,sample,intersection,responder,cp,moving,under_way,human,straight,straight,left,unknown,sv_and_partner,,,unknown,";
+    std::fs::write(&files.labels, format!("{ACCOUNTS_HEADER}\n{row}\n")).unwrap();
+    // The reader has another answer to who drove.
+    assert_eq!(share(&json(&eval(&files, &["--agent", "reader", "--json"])), "dev", "driver"), 0.0);
     let out = files.folder.path().join("run");
     let more = ["--agent", "some-model", "--llm", "batch", "--out", out.to_str().unwrap(), "--json"];
     assert_eq!(eval(&files, &more).status.code(), Some(4));
     let request: Value = serde_json::from_str(&std::fs::read_to_string(out.join("requests.jsonl")).unwrap()).unwrap();
-    let column = |value: &str, name: &str| serde_json::json!({"value": value, "words": null, "column": name});
-    let from = serde_json::json!({"value": {"cross": {"side": "left"}}, "words": "came from its left", "column": null});
-    let answer = serde_json::json!({"report": "90103-311/1", "crash_type": "intersection", "came_from": from,
-        "sv": {"movement": column("straight", "SV Pre-Crash Movement")},
-        "partner": {"movement": column("straight", "CP Pre-Crash Movement")}});
+    let driver = serde_json::json!({"value": "human", "words": "Level 4 operation was active"});
+    let answer = serde_json::json!({"report": "90103-311/1", "driver": driver});
     let line = serde_json::json!({
         "custom_id": request["custom_id"],
         "response": {"status_code": 200, "body": {"choices": [{"message": {"role": "assistant", "content": answer.to_string()}}],
@@ -100,9 +102,9 @@ fn a_model_is_asked_by_batch_and_its_answers_are_scored() {
     });
     std::fs::write(out.join("responses.jsonl"), format!("{line}\n")).unwrap();
     let scored = json(&eval(&files, &more));
-    assert_eq!((share(&scored, "dev", "approach"), share(&scored, "dev", "excluded")), (1.0, 1.0));
+    assert_eq!(share(&scored, "dev", "driver"), 1.0);
     // What the model does not tell is as the reader has it.
-    assert_eq!(share(&scored, "dev", "road"), 1.0);
+    assert_eq!((share(&scored, "dev", "came_from"), share(&scored, "dev", "crash_type")), (1.0, 1.0));
 }
 
 /// The bounds are the targets of the evaluation, as totals (`docs/models/evaluation.md`).

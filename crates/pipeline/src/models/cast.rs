@@ -22,7 +22,7 @@ pub const RULES: &str = "rules";
 #[serde(deny_unknown_fields)]
 pub struct Cast {
     /// Reads reports, where a model plays it: of a suite that goes by templates each pick's, of one that goes by accounts
-    /// those that the built-in reader did not read whole.
+    /// those of `reads`.
     pub paraphrase: String,
     /// Designs scenarios.
     pub design: String,
@@ -33,6 +33,20 @@ pub struct Cast {
     /// How often an answer that cannot be used goes back, in one role for one scenario.
     #[serde(default = "default_repairs")]
     pub repairs: usize,
+    /// Which incidents a model reads, of a suite that goes by accounts.
+    #[serde(default)]
+    pub reads: Reads,
+}
+
+/// Which incidents a language model reads.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Reads {
+    /// Those that the built-in reader did not read whole.
+    #[default]
+    Unread,
+    /// All.
+    All,
 }
 
 fn default_repairs() -> usize {
@@ -41,7 +55,14 @@ fn default_repairs() -> usize {
 
 impl Default for Cast {
     fn default() -> Self {
-        Self { paraphrase: RULES.into(), design: RULES.into(), tune: RULES.into(), rounds: 3, repairs: REPAIRS }
+        Self {
+            paraphrase: RULES.into(),
+            design: RULES.into(),
+            tune: RULES.into(),
+            rounds: 3,
+            repairs: REPAIRS,
+            reads: Reads::default(),
+        }
     }
 }
 

@@ -3,6 +3,7 @@
 use crate::error::PipelineError;
 use crate::files::json::to_compact_json;
 use crate::files::store::sha256;
+use crate::models::cast::Reads;
 use crate::progress::{Progress, ProgressEvent};
 use crate::reading::accounts::told_facts;
 use crate::reading::records;
@@ -80,6 +81,11 @@ impl Retold {
     }
 }
 
+/// Why the crash of an account is not told by its reconstruction; nothing where it is.
+pub(crate) fn why_untold(account: &Account) -> Option<String> {
+    Retold { account: 0, result: reconstruct(account) }.reason()
+}
+
 /// A told fact that is missed, and what is seen in its place.
 pub(crate) fn what_is_missed(missed: &Check) -> String {
     let what = missed.kind.label();
@@ -147,7 +153,7 @@ fn place(record: &CrashRecord) -> Place<'_> {
     (&record.provenance.file, record.provenance.row)
 }
 
-/// An incident that the built-in reader did not read whole, and what it made of it.
+/// An incident that somebody else is to read, and what the built-in reader made of it.
 pub(crate) struct Unread<'a> {
     /// Its reports.
     pub incident: &'a Incident,
@@ -169,8 +175,8 @@ fn is_incomplete(account: &Account, retold: &Retold) -> bool {
 pub(crate) type ReadAgain<'a> = dyn FnMut(&[Unread], usize) -> Result<Vec<Option<Account>>, PipelineError> + 'a;
 
 /// Groups reports into incidents, reads and reconstructs each, and leaves those usable whose every told fact is shown: the
-/// report that speaks stands for its incident. What is not read whole goes to `read_again`; its account is taken where the crash is
-/// told by it. Scenarios of what is told go to `stagings`.
+/// report that speaks stands for its incident. What is not read whole, or all, goes to `read_again`; its account is taken where the
+/// crash is told by it. Scenarios of what is told go to `stagings`.
 ///
 /// # Errors
 /// Those of `read_again`.
@@ -178,7 +184,7 @@ pub(crate) fn tell(
     mut set: RecordSet,
     filter: Option<&Filter>,
     progress: &dyn Progress,
-    read_again: &mut ReadAgain,
+    (reads, read_again): (Reads, &mut ReadAgain),
     stagings: &Stagings,
 ) -> Result<(RecordSet, AccountSet), PipelineError> {
     let incidents = records::incidents(&set);
@@ -190,7 +196,8 @@ pub(crate) fn tell(
     let read: Vec<&Incident> = incidents.iter().filter(kept).collect();
     let mut accounts: Vec<Account> = read.par_iter().filter_map(|incident| recrash_reader::account(incident)).collect();
     let mut retold = reconstruct_accounts(&accounts, progress);
-    let unread: Vec<usize> = (0..accounts.len()).filter(|&at| is_incomplete(&accounts[at], &retold[at])).collect();
+    let is_asked = |at: &usize| reads == Reads::All || is_incomplete(&accounts[*at], &retold[*at]);
+    let unread: Vec<usize> = (0..accounts.len()).filter(is_asked).collect();
     let of_id: BTreeMap<&str, &Incident> = read.iter().map(|&incident| (incident.id.as_str(), incident)).collect();
     let incident = |account: &Account| of_id[account.incident.as_str()];
     let asked: Vec<Unread> =

@@ -4,6 +4,7 @@ use super::second_reading::{SecondReading, read_again};
 use super::{StageReport, StageWork, cases, own, player};
 use crate::error::PipelineError;
 use crate::files::json::{to_compact_json, to_json};
+use crate::models::cast::Reads;
 use crate::reading::records::RecordInput;
 use crate::reading::retelling::{Unread, tell};
 use crate::suite::Suite;
@@ -42,7 +43,8 @@ pub(super) fn run(work: &StageWork) -> Result<StageReport, PipelineError> {
             logs = told;
             Ok(accounts)
         };
-        let (told, accounts) = tell(value, filter.as_ref(), work.progress, &mut again, suite.stagings())?;
+        let reads = suite.options().cast.reads;
+        let (told, accounts) = tell(value, filter.as_ref(), work.progress, (reads, &mut again), suite.stagings())?;
         Ok(vec![
             (names::ACCOUNT_READERS.into(), to_json(&logs)),
             (names::RECORDS.into(), to_compact_json(&told)),
@@ -108,6 +110,8 @@ const TRIPLES_SHOWN: usize = 20;
 /// What decides which records come out.
 pub(super) fn inputs(suite: &Suite, input: &RecordInput) -> Vec<String> {
     let by_accounts = suite.profile().records.tells == Tells::Accounts;
-    let reader = by_accounts.then(|| player(suite, &suite.options().cast.paraphrase));
-    std::iter::once(cases::text_of(suite.profile())).chain(reader).chain(input.parts()).collect()
+    let cast = &suite.options().cast;
+    let reader = by_accounts.then(|| player(suite, &cast.paraphrase));
+    let reads = (by_accounts && cast.reads == Reads::All).then(|| "all".to_owned());
+    std::iter::once(cases::text_of(suite.profile())).chain(reader).chain(reads).chain(input.parts()).collect()
 }

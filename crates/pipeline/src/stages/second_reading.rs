@@ -1,9 +1,9 @@
-//! A language model reads what the built-in reader did not read whole, in a suite that goes by accounts.
+//! A language model reads what the built-in reader did not read whole, or everything, in a suite that goes by accounts.
 
 use crate::error::PipelineError;
-use crate::models::cast::{AgentLog, RULES, reading_brief, unusable};
+use crate::models::cast::{AgentLog, RULES, Reads, reading_brief, unusable};
 use crate::progress::{Progress, ProgressEvent};
-use crate::reading::retelling::Unread;
+use crate::reading::retelling::{Unread, why_untold};
 use crate::suite::{Stage, Suite};
 use rayon::prelude::*;
 use recrash_agents::llm::{Repairs, paraphrase_question};
@@ -20,7 +20,19 @@ pub(super) struct SecondReading {
     pub logs: BTreeMap<String, AgentLog>,
 }
 
-/// Has the model read these incidents, of `all`; nothing where none is cast. How many they are and what they cost is said before
+/// The account with what follows from its facts, where the crash is told by it.
+fn shown(mut account: Account) -> Result<Account, String> {
+    recrash_reader::refold(&mut account);
+    match why_untold(&account) {
+        None => Ok(account),
+        Some(why) => Err(format!(
+            "the crash cannot be rebuilt from this account: {why}. Read again whether the report says so, who did it, to which side, and \
+             before or after what; mend what it says otherwise, and nothing else"
+        )),
+    }
+}
+
+/// Has the model read these incidents, of so many; nothing where none is cast. How many they are and what they cost is said before
 /// the first question.
 ///
 /// # Errors
@@ -46,10 +58,11 @@ pub(super) fn read_again(
     }
     let cost = models.estimate(name, bytes, unread.len());
     let share = 100.0 * unread.len() as f64 / all.max(1) as f64;
-    let what = format!(
-        "{name} reads {} of {all} readable incidents ({share:.1} %), those that the built-in reader did not read whole: {cost}",
-        unread.len()
-    );
+    let which = match cast.reads {
+        Reads::Unread => ", those that the built-in reader did not read whole",
+        Reads::All => "",
+    };
+    let what = format!("{name} reads {} of {all} readable incidents ({share:.1} %){which}: {cost}", unread.len());
     progress.event(ProgressEvent::Said { what: &what });
 
     let stage = "read";
@@ -57,13 +70,12 @@ pub(super) fn read_again(
     let one = |each: &Unread| -> Result<(Option<Account>, AgentLog), PipelineError> {
         let repairs = Repairs::default();
         let mut answer = None;
-        with_brief(each, &mut |brief| answer = Some(models.model(name, cast, &repairs).read(brief, each.account)));
+        with_brief(each, &mut |brief| {
+            answer = Some(models.model(name, cast, &repairs).read_until(brief, each.account, shown));
+        });
         progress.event(ProgressEvent::Advanced { stage, unit: &each.account.incident, skipped: false });
         match answer.unwrap_or_else(|| unreachable!("it is asked once")) {
-            Ok(mut account) => {
-                recrash_reader::refold(&mut account);
-                Ok((Some(account), AgentLog::model(name, repairs.all())))
-            }
+            Ok(account) => Ok((Some(account), AgentLog::model(name, repairs.all()))),
             Err(error) => Ok((None, AgentLog::fallback(name, repairs.all(), unusable(error)?))),
         }
     };

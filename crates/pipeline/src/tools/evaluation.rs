@@ -14,8 +14,9 @@ use crate::models::{ModelAccess, Models};
 use crate::profiles::load_profile;
 use crate::reading::fetching::cached;
 use labels::{ACCOUNTS, RECORDS, Sheet, agreement, read_labels};
+use recrash_agents::Rules;
 use recrash_agents::llm::Repairs;
-use recrash_agents::{Rules, account_of};
+use recrash_model::incident::Incident;
 use recrash_model::labelled::LabelledAccount;
 use recrash_model::profile::{Dedupe, SystemProfile};
 use recrash_model::record::{CrashRecord, RecordRef};
@@ -107,8 +108,8 @@ pub struct Disagreement {
 /// Labels or crash files that cannot be used; questions that wait for a batch.
 pub fn evaluate(request: &EvaluationRequest) -> Result<Evaluation, PipelineError> {
     let profile = load_profile(&request.profile)?;
-    // The reader is held against accounts, who reads records against what a template asks of them.
-    let sheet = if request.agent == READER { &ACCOUNTS } else { &RECORDS };
+    // Who reads accounts is held against accounts, the rules of templates against what a template asks of a record.
+    let sheet = if request.agent == RULES { &RECORDS } else { &ACCOUNTS };
     let labels = match &request.labels {
         None => read_labels(sheet.name, sheet.built_in, sheet)?,
         Some(path) => read_labels(&path.to_string_lossy(), &read_text(path, MAX_LABELS)?, sheet)?,
@@ -131,7 +132,7 @@ pub fn evaluate(request: &EvaluationRequest) -> Result<Evaluation, PipelineError
     let accounts = match request.agent.as_str() {
         RULES => found.iter().map(|(_, record)| Rules.account(record, &profile)).collect(),
         READER => told_accounts(&records, &found),
-        _ => model_accounts(request, &profile, &found, &mut unread)?,
+        _ => model_accounts(request, &profile, &records, &found, &mut unread)?,
     };
     Ok(compare(request, sheet, &found, &accounts, missing, unread))
 }
@@ -148,7 +149,7 @@ fn compare(
 ) -> Evaluation {
     let pairs = || found.iter().copied().zip(accounts);
     // How far two readers agree is known of the built-in accounts alone.
-    let two_readers = request.labels.is_none() && request.agent == READER;
+    let two_readers = request.labels.is_none() && request.agent != RULES;
     let mut halves = Vec::new();
     for half in [Half::HeldOut, Half::Dev] {
         let of_half: Vec<(&Label, &LabelledAccount)> =
@@ -200,44 +201,51 @@ fn told_accounts(records: &[CrashRecord], found: &[(&Label, &CrashRecord)]) -> V
     found.iter().map(|(label, _)| by_report.get(&label.record.report_id).cloned().unwrap_or_default()).collect()
 }
 
-/// A model reads through the same role that retells records for a suite.
+/// A model reads through the same role that reads incidents for a suite, over the account of the reader.
 fn model_accounts(
     request: &EvaluationRequest,
     profile: &SystemProfile,
+    records: &[CrashRecord],
     found: &[(&Label, &CrashRecord)],
     unread: &mut Vec<(RecordRef, String)>,
 ) -> Result<Vec<LabelledAccount>, PipelineError> {
     let store = Store::create(&request.out, write_file_whole)?;
     let cast = Cast { paraphrase: request.agent.clone(), ..Cast::default() };
     let (models, _) = Models::open(&store, &cast, &request.models, true)?;
+    let incidents = recrash_reader::incidents(records);
+    let of_report: BTreeMap<&str, &Incident> = incidents
+        .iter()
+        .flat_map(|incident| incident.reports.iter().map(move |report| (report.record.id.report_id.as_str(), incident)))
+        .collect();
+    let read = |label: &Label| -> Result<LabelledAccount, PipelineError> {
+        let incident = of_report.get(label.record.report_id.as_str());
+        let Some((incident, base)) = incident.and_then(|&&ref it| Some((it, recrash_reader::account(it)?))) else {
+            return Err(PipelineError::bad_input("it has no narrative that can be read"));
+        };
+        let reports: Vec<&CrashRecord> = incident.reports.iter().map(|report| &report.record).collect();
+        let scenario_id = format!("eval-{}", base.incident);
+        let brief = reading_brief(&scenario_id, &reports, profile, &base);
+        let repairs = Repairs::default();
+        let account = models.model(&request.agent, &cast, &repairs).read(&brief, &base);
+        account
+            .map(|account| told::in_labels(&account))
+            .or_else(|error| Err(PipelineError::bad_input(unusable(error)?)))
+    };
     let mut accounts = Vec::with_capacity(found.len());
     let mut waiting = false;
-    for (label, record) in found {
-        let mut fail = |why: String| {
-            unread.push((label.record.clone(), why));
-            LabelledAccount::default()
-        };
-        let incidents = recrash_reader::incidents(&[(*record).clone()]);
-        let Some(base) = incidents.first().and_then(recrash_reader::account) else {
-            accounts.push(fail("it has no narrative that can be read".into()));
-            continue;
-        };
-        let scenario_id = format!("eval-{}-{}", label.record.report_id, label.record.version);
-        let records = [*record];
-        let brief = reading_brief(&scenario_id, &records, profile, &base);
-        let repairs = Repairs::default();
-        let account = match models.model(&request.agent, &cast, &repairs).read(&brief, &base) {
-            Ok(account) => account_of(&account, profile),
-            Err(error) => match unusable(error) {
-                Ok(why) => fail(why),
-                Err(PipelineError::AnswerPending) => {
-                    waiting = true;
-                    LabelledAccount::default()
-                }
-                Err(error) => return Err(error),
-            },
-        };
-        accounts.push(account);
+    for (label, _) in found {
+        accounts.push(match read(label) {
+            Ok(account) => account,
+            Err(PipelineError::BadInput { what, .. }) => {
+                unread.push((label.record.clone(), what));
+                LabelledAccount::default()
+            }
+            Err(PipelineError::AnswerPending) => {
+                waiting = true;
+                LabelledAccount::default()
+            }
+            Err(error) => return Err(error),
+        });
     }
     if waiting {
         let (requests, count) = models.write_requests()?;

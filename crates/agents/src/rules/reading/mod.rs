@@ -10,7 +10,7 @@ mod road;
 mod zones;
 
 pub use account::account;
-pub use of_account::{collision_of, reading_of_account};
+pub use of_account::reading_of_account;
 
 pub use approach::side_from_zones;
 

@@ -60,7 +60,7 @@ fn relation(from: Origin) -> Option<Relation> {
 }
 
 /// The kind of collision that a type of crash is.
-pub fn collision_of(account: &Account) -> Option<CollisionKind> {
+fn collision_of(account: &Account) -> Option<CollisionKind> {
     match told(&account.crash_type)? {
         CrashType::FrontToRear if told(&account.striker) == Some(Striker::Sv) => Some(CollisionKind::RearEndByEgo),
         CrashType::FrontToRear => Some(CollisionKind::RearEndOfEgo),
