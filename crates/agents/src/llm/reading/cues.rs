@@ -86,8 +86,8 @@ pub fn origin(from: Origin, words: &str) -> bool {
         LeftRight::Right => RIGHT.is_match(words),
     };
     match from {
-        Origin::Behind => BEHIND.is_match(words),
-        Origin::Ahead => AHEAD.is_match(words),
+        Origin::Behind => BEHIND.is_match(words) || PASSING.is_match(words),
+        Origin::Ahead => AHEAD.is_match(words) || MEETS.is_match(words) || PASSING.is_match(words),
         Origin::Opposite => OPPOSITE.is_match(words),
         Origin::Beside { side: _ } => BESIDE.is_match(words),
         Origin::Cross { side: from } => side(from),
@@ -101,7 +101,13 @@ pub fn origin(from: Origin, words: &str) -> bool {
 
 /// Whether words can say where somebody else is: "behind a bus" says that the bus is ahead.
 pub fn whereabouts(at: Origin, words: &str) -> bool {
-    origin(at, words) || AHEAD_OF.is_match(words)
+    origin(at, words) || AHEAD_OF.is_match(words) || tells(words)
+}
+
+/// Whether words are of somebody who does something or is somewhere, and no bare name.
+fn tells(words: &str) -> bool {
+    let any = [&ONWARD, &LANE, &MEETS, &STOOD, &PARKED, &SIDEWAYS, &AHEAD_OF, &ENTERS, &TURNS, &YIELD];
+    words.split_whitespace().count() > 2 && any.iter().any(|pattern| pattern.is_match(words))
 }
 
 /// Whether words can say a movement.
@@ -125,7 +131,7 @@ pub fn movement(movement: Movement, words: &str) -> bool {
 pub fn state(state: ContactState, words: &str) -> bool {
     match state {
         ContactState::Moving => {
-            ONWARD.is_match(words) || LANE.is_match(words) || MEETS.is_match(words) || words.contains("turn")
+            ONWARD.is_match(words) || SIDEWAYS.is_match(words) || MEETS.is_match(words) || TURNS.is_match(words)
         }
         ContactState::SettingOff => SETS_OFF.is_match(words),
         ContactState::Stopped => STOOD.is_match(words),
@@ -246,9 +252,21 @@ pub fn place(kind: PlaceKind, words: &str) -> bool {
     }
 }
 
-/// Whether words can say what somebody did.
+/// Whether words can say what somebody did. There are more verbs of driving than any list has: a clause of somebody who drives will do.
 pub fn act(act: Act, words: &str) -> bool {
-    match act {
+    let drives = matches!(
+        act,
+        Act::Follow
+            | Act::SetOff
+            | Act::Pass
+            | Act::LaneChange
+            | Act::Drift
+            | Act::Swerve
+            | Act::PullOut
+            | Act::Enter
+            | Act::Cross
+    );
+    let of_act = match act {
         Act::Follow => {
             ONWARD.is_match(words) || LANE.is_match(words) || MEETS.is_match(words) || BEHIND.is_match(words)
         }
@@ -283,7 +301,8 @@ pub fn act(act: Act, words: &str) -> bool {
         Act::LoseControl => LOSES.is_match(words),
         Act::Roll => ROLLS.is_match(words),
         Act::Leave => LEAVES.is_match(words),
-    }
+    };
+    of_act || (drives && tells(words))
 }
 
 /// Whether words can say why somebody stood.
