@@ -44,23 +44,24 @@ pub fn contact_geometry(
     other: &OrientedBox,
     other_velocity: Vec2,
 ) -> ContactGeometry {
-    let moved = touching(ego, other);
-    let point = ConvexPolygon::overlap(ego, &moved).centroid().unwrap_or(ego.centre);
+    let (moved, shared) = touching(ego, other);
+    let point = shared.centroid().unwrap_or(ego.centre);
     let ego_zone = ContactZone::at(ego, point);
     let other_zone = ContactZone::at(&moved, point);
     let kind = collision_kind(ego, ego_zone, other, other_zone, other_velocity - ego_velocity);
     ContactGeometry { ego_zone, other_zone, kind, point }
 }
 
-/// `other` where it overlaps `ego` by at least a little: moved along the nearest line, or as it is.
-fn touching(ego: &OrientedBox, other: &OrientedBox) -> OrientedBox {
-    let overlap = ConvexPolygon::overlap(ego, other);
-    if overlap.area() > math::sq(TOUCH_DEPTH_M) {
-        return *other;
+/// `other` where it overlaps `ego` by at least a little, moved along the nearest line, or as it is; and the part they share there.
+fn touching(ego: &OrientedBox, other: &OrientedBox) -> (OrientedBox, ConvexPolygon) {
+    let shared = ConvexPolygon::overlap(ego, other);
+    if shared.area() > math::sq(TOUCH_DEPTH_M) {
+        return (*other, shared);
     }
     let (on_ego, on_other, gap) = ego.nearest_points(other);
     let towards = if gap > 1e-9 { (on_ego - on_other) * (1.0 / gap) } else { unit(ego.centre - other.centre) };
-    OrientedBox { centre: other.centre + towards * (gap.max(0.0) + TOUCH_DEPTH_M), ..*other }
+    let moved = OrientedBox { centre: other.centre + towards * (gap.max(0.0) + TOUCH_DEPTH_M), ..*other };
+    (moved, ConvexPolygon::overlap(ego, &moved))
 }
 
 fn unit(v: Vec2) -> Vec2 {

@@ -168,11 +168,7 @@ impl OrientedBox {
     pub fn overlaps(&self, other: &Self) -> bool {
         let d = other.centre - self.centre;
         let reach = self.radius() + other.radius();
-        if d.length_squared() > reach * reach {
-            return false;
-        }
-        let [along, across, along_other, across_other] = self.axis_overlaps(other);
-        along >= 0.0 && across >= 0.0 && along_other >= 0.0 && across_other >= 0.0
+        d.length_squared() <= reach * reach && Shadows::of(self, other).meet(d)
     }
 
     /// How far one of the boxes would have to move for them to be apart, 0 where they are. [m]
@@ -184,17 +180,7 @@ impl OrientedBox {
     /// By how much their shadows overlap on the two axes of each box; negative where they are apart. [m]
     #[inline]
     fn axis_overlaps(&self, other: &Self) -> [f64; 4] {
-        let d = other.centre - self.centre;
-        let c = self.axis.dot(other.axis).abs();
-        let s = self.axis.cross(other.axis).abs();
-        let (own_l, own_w) = (self.half_length, self.half_width);
-        let (other_l, other_w) = (other.half_length, other.half_width);
-        [
-            own_l + other_l * c + other_w * s - d.dot(self.axis).abs(),
-            own_w + other_l * s + other_w * c - d.dot(self.axis.left()).abs(),
-            other_l + own_l * c + own_w * s - d.dot(other.axis).abs(),
-            other_w + own_l * s + own_w * c - d.dot(other.axis.left()).abs(),
-        ]
+        Shadows::of(self, other).overlaps_m(other.centre - self.centre)
     }
 
     /// Half of its shadow in a direction. [m]
@@ -259,6 +245,46 @@ impl OrientedBox {
     }
 }
 
+/// The shadows of two boxes that keep their headings, on the two axes of each: what does not change as one moves past the other.
+#[derive(Debug, Clone, Copy)]
+pub struct Shadows {
+    /// Each axis, with half of both shadows on it. [m]
+    axes: [(Vec2, f64); 4],
+}
+
+impl Shadows {
+    /// Those of two boxes, wherever they are.
+    #[inline]
+    pub fn of(one: &OrientedBox, other: &OrientedBox) -> Self {
+        let c = one.axis.dot(other.axis).abs();
+        let s = one.axis.cross(other.axis).abs();
+        let (own_l, own_w) = (one.half_length, one.half_width);
+        let (other_l, other_w) = (other.half_length, other.half_width);
+        let axes = [
+            (one.axis, own_l + other_l * c + other_w * s),
+            (one.axis.left(), own_w + other_l * s + other_w * c),
+            (other.axis, other_l + own_l * c + own_w * s),
+            (other.axis.left(), other_w + own_l * s + own_w * c),
+        ];
+        Self { axes }
+    }
+
+    /// By how much they overlap on each axis, with the second box so far from the first; negative where they are apart. [m]
+    #[inline]
+    fn overlaps_m(&self, apart: Vec2) -> [f64; 4] {
+        let on = |(axis, half_m): (Vec2, f64)| half_m - apart.dot(axis).abs();
+        let [along, across, along_other, across_other] = self.axes;
+        [on(along), on(across), on(along_other), on(across_other)]
+    }
+
+    /// Whether the boxes share a point, with the second so far from the first (separating axis theorem; touching counts).
+    #[inline]
+    pub fn meet(&self, apart: Vec2) -> bool {
+        let [along, across, along_other, across_other] = self.overlaps_m(apart);
+        along >= 0.0 && across >= 0.0 && along_other >= 0.0 && across_other >= 0.0
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -296,6 +322,20 @@ mod tests {
         assert!((at(0.0, 0.0, 0.0).depth(&at(0.5, 1.9, 0.0)) - 0.1).abs() < 1e-12);
         assert!((at(0.0, 0.0, 0.0).depth(&at(2.8, 0.0, math::FRAC_PI_2)) - 0.2).abs() < 1e-12);
         assert_eq!(at(0.0, 0.0, 0.0).depth(&at(4.1, 0.0, 0.0)), 0.0);
+    }
+
+    #[test]
+    fn boxes_that_keep_their_headings_meet_where_they_overlap() {
+        let (still, mut moves) = (boxed(1.0, 2.0, 0.4), boxed(0.0, 0.0, 2.1));
+        let shadows = Shadows::of(&still, &moves);
+        let mut met = 0;
+        for (x, y) in (0..20).flat_map(|x| (0..20).map(move |y| (f64::from(x) * 0.5 - 4.0, f64::from(y) * 0.5 - 3.0))) {
+            moves.centre = Vec2::new(x, y);
+            let meet = shadows.meet(moves.centre - still.centre);
+            assert_eq!(meet, still.overlaps(&moves), "({x}, {y})");
+            met += usize::from(meet);
+        }
+        assert!((20..200).contains(&met), "{met}");
     }
 
     #[test]

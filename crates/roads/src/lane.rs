@@ -13,6 +13,9 @@ pub struct LaneId(pub u16);
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct RoadId(pub u16);
 
+/// More than rounding takes a point off a lane. [m]
+const SPARE_M: f64 = 0.01;
+
 /// A lane.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Lane {
@@ -77,8 +80,20 @@ impl Lane {
         Stretch { start, curvature: self.curvature(), length_m: self.length_m }
     }
 
+    /// Whether a point is too far off to lie on the lane: most are, of which this is told at a fraction of the price.
+    pub fn is_far(&self, point: Vec2) -> bool {
+        let beside_m = 0.5 * self.width_m.max(self.end_width_m) + SPARE_M;
+        match self.centreline {
+            Centreline::Straight { start, .. } => point.distance(start) > self.length_m + beside_m,
+            Centreline::Arc { centre, radius, .. } => (point.distance(centre) - radius).abs() > beside_m,
+        }
+    }
+
     /// Whether a point lies on the lane, its edges included.
     pub fn contains(&self, point: Vec2) -> bool {
+        if self.is_far(point) {
+            return false;
+        }
         let (s, t) = self.local(point);
         (0.0..=self.length_m).contains(&s) && t.abs() <= 0.5 * self.width_at(s)
     }
@@ -134,5 +149,26 @@ impl SegmentShape {
     /// That of a lane.
     pub fn of(lane: &Lane) -> Self {
         Self::of_line(&lane.centreline, lane.length_m)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_point_of_a_lane_is_far_from_it_and_most_others_are() {
+        let straight = Centreline::Straight { start: Vec2::new(3.0, -2.0), heading: 0.7 };
+        let arc = |turn: f64| Centreline::Arc { centre: Vec2::new(-4.0, 6.0), radius: 12.0, start_angle: 2.0, turn };
+        for centreline in [straight, arc(1.0), arc(-1.0)] {
+            let lane = Lane { road: RoadId(0), index: 0, centreline, length_m: 15.0, width_m: 3.5, end_width_m: 2.5 };
+            for (s, t) in (0..=30).flat_map(|s| [-0.5, 0.0, 0.5].map(|t| (0.5 * f64::from(s), t))) {
+                let point = lane.position(s, t * lane.width_at(s));
+                assert!(!lane.is_far(point), "{centreline:?}, {s} m, {t}");
+            }
+            let around =
+                (-20..20).flat_map(|x| (-20..20).map(move |y| Vec2::new(2.0 * f64::from(x), 2.0 * f64::from(y))));
+            assert!(around.filter(|point| lane.is_far(*point)).count() > 1000, "{centreline:?}");
+        }
     }
 }

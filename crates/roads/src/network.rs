@@ -100,7 +100,7 @@ impl RoadNetwork {
     /// least of offset plus lane width times difference of heading), else of the others. `None` off the road.
     pub fn lane_at(&self, point: Vec2, heading: f64) -> Option<LaneId> {
         let mut best: Option<(bool, f64, usize)> = None;
-        for (position, lane) in self.lanes.iter().enumerate() {
+        for (position, lane) in self.lanes.iter().enumerate().filter(|(_, lane)| !lane.is_far(point)) {
             let (s, t) = lane.local(point);
             if !(0.0..=lane.length_m).contains(&s) || t.abs() > 0.5 * lane.width_at(s) {
                 continue;

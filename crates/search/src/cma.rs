@@ -18,6 +18,7 @@ const START_STEP: f64 = 0.15;
 const LEAST_STEP: f64 = 1e-4;
 
 /// Halton points first; then the strategy from the best of them, started again when it has converged.
+#[derive(Clone)]
 pub struct ExploreThenCma {
     halton: Halton,
     explore_left: usize,
@@ -70,9 +71,14 @@ impl Optimiser for ExploreThenCma {
             None => self.starts.push((objective, point.to_vec())),
         }
     }
+
+    fn copy(&self) -> Box<dyn Optimiser> {
+        Box::new(self.clone())
+    }
 }
 
 /// State of one (1+1)-CMA-ES. Names in comments are the paper's.
+#[derive(Clone)]
 struct Strategy {
     parent: Vec<f64>,
     objective: f64,

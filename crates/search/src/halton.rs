@@ -8,6 +8,7 @@ use recrash_model::math::radical_inverse;
 const BASES: [u32; 16] = [2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53];
 
 /// Points of the shifted sequence, one after the other.
+#[derive(Clone)]
 pub struct Halton {
     shift: Vec<f64>,
     next: u32,
@@ -43,6 +44,10 @@ impl Optimiser for Halton {
     }
 
     fn tell(&mut self, _point: &[f64], _objective: f64) {}
+
+    fn copy(&self) -> Box<dyn Optimiser> {
+        Box::new(self.clone())
+    }
 }
 
 #[cfg(test)]

@@ -11,6 +11,7 @@ mod halton;
 
 use recrash_model::Seed;
 use recrash_model::tuning::{Parameter, Score, TUNE_FORMAT, TuneLog, TunePoint};
+use std::cell::RefCell;
 
 /// Which optimiser proposes the points.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -72,7 +73,14 @@ trait Optimiser {
 
     /// The objective of a point: of the last one asked for, or of the scenario as designed. Infinite where refused.
     fn tell(&mut self, point: &[f64], objective: f64);
+
+    /// Another one that has learned the same.
+    fn copy(&self) -> Box<dyn Optimiser>;
 }
+
+/// The points that a search comes to next, as many as are asked for, if neither the one that is scored nor they are better than the best so
+/// far. Most are not: who has time to spare may make ready for them.
+pub type Next<'a> = &'a dyn Fn(usize) -> Vec<Vec<f64>>;
 
 /// What is searched.
 #[derive(Debug, Clone, Copy)]
@@ -87,7 +95,7 @@ pub struct Task<'a> {
     pub searcher: &'a str,
 }
 
-/// Searches for values of `parameters` that make `score(values).objective` small, with one of our optimisers.
+/// Searches for values of `parameters` that make `score(values, next).objective` small, with one of our optimisers.
 ///
 /// Point 0 is the scenario as designed. Refused points are logged and never kept, so the result is at least as good as
 /// the start; where every point is refused, the start is kept. The search ends early at a score that `enough` accepts.
@@ -96,18 +104,28 @@ pub fn tune(
     parameters: &[Parameter],
     options: TuneOptions,
     seed: Seed,
-    score: impl FnMut(&[f64]) -> Score,
+    mut score: impl FnMut(&[f64], Next<'_>) -> Score,
     enough: impl Fn(&TunePoint) -> bool,
 ) -> TuneLog {
-    let mut optimiser = options.searcher.optimiser(parameters.len(), options.budget, seed);
+    let optimiser = RefCell::new(options.searcher.optimiser(parameters.len(), options.budget, seed));
     let propose = |history: &[TunePoint]| {
+        let mut optimiser = optimiser.borrow_mut();
         if let Some(last) = history.last() {
-            let unit: Vec<f64> = parameters.iter().zip(&last.values).map(|(p, &value)| to_unit(p, value)).collect();
             let objective = if last.score.refused.is_empty() { last.score.objective } else { f64::INFINITY };
-            optimiser.tell(&unit, objective);
+            optimiser.tell(&all_to_unit(parameters, &last.values), objective);
         }
-        let (unit, proposed_by) = optimiser.ask();
-        Ok((parameters.iter().zip(&unit).map(|(p, &u)| from_unit(p, u)).collect(), proposed_by))
+        Ok(asked(&mut **optimiser, parameters))
+    };
+    let score = |values: &[f64]| {
+        score(values, &|count| {
+            let (mut optimiser, mut values) = (optimiser.borrow().copy(), values.to_vec());
+            let after = |_| {
+                optimiser.tell(&all_to_unit(parameters, &values), f64::INFINITY);
+                values = asked(&mut *optimiser, parameters).0;
+                values.clone()
+            };
+            (0..count).map(after).collect()
+        })
     };
     let task = Task { scenario_id, parameters, seed, searcher: options.searcher.name() };
     match tune_with(&task, options.budget, propose, score, enough) {
@@ -160,9 +178,19 @@ pub fn tune_with<E>(
     })
 }
 
+/// The next point of an optimiser, and a word on how it came about.
+fn asked(optimiser: &mut dyn Optimiser, parameters: &[Parameter]) -> (Vec<f64>, &'static str) {
+    let (unit, proposed_by) = optimiser.ask();
+    (parameters.iter().zip(&unit).map(|(p, &u)| from_unit(p, u)).collect(), proposed_by)
+}
+
 fn is_better(point: &TunePoint, earlier: &[TunePoint], best: usize) -> bool {
     let Some(best) = earlier.get(best) else { return true };
     point.score.refused.is_empty() && (!best.score.refused.is_empty() || point.score.objective < best.score.objective)
+}
+
+fn all_to_unit(parameters: &[Parameter], values: &[f64]) -> Vec<f64> {
+    parameters.iter().zip(values).map(|(p, &value)| to_unit(p, value)).collect()
 }
 
 fn to_unit(parameter: &Parameter, value: f64) -> f64 {
@@ -209,7 +237,7 @@ mod tests {
     fn best_of(searcher: Searcher, budget: usize, seed: u64, f: impl Fn(&[f64]) -> f64) -> f64 {
         let parameters: Vec<_> = (0..4).map(|i| parameter(-1.0, 3.0, 2.0 - f64::from(i) * 0.3)).collect();
         let options = TuneOptions { searcher, budget };
-        let log = tune("t", &parameters, options, Seed(seed), |x| scored(f(x), false), |_| false);
+        let log = tune("t", &parameters, options, Seed(seed), |x, _| scored(f(x), false), |_| false);
         assert_eq!(log.points.len(), budget);
         log.points[log.best].score.objective
     }
@@ -241,7 +269,7 @@ mod tests {
             &parameters,
             TuneOptions { budget: 20, ..TuneOptions::default() },
             Seed(1),
-            |x| scored(-x[0].abs(), x[0] != 0.5),
+            |x, _| scored(-x[0].abs(), x[0] != 0.5),
             |_| false,
         );
         assert_eq!(log.best, 0);
@@ -251,15 +279,33 @@ mod tests {
     #[test]
     fn a_refused_start_gives_way_to_any_accepted_point() {
         let parameters = [parameter(0.0, 1.0, 0.5)];
-        let log = tune("t", &parameters, TuneOptions::default(), Seed(1), |x| scored(5.0, x[0] == 0.5), |_| false);
+        let log = tune("t", &parameters, TuneOptions::default(), Seed(1), |x, _| scored(5.0, x[0] == 0.5), |_| false);
         assert_ne!(log.best, 0);
+    }
+
+    #[test]
+    fn what_comes_next_is_told_where_nothing_better_is_found() {
+        let parameters = [parameter(0.0, 1.0, 0.5), parameter(0.0, 9.0, 1.0)];
+        let (budget, ahead) = (60, 5);
+        for searcher in [Searcher::Halton, Searcher::Cma] {
+            let mut told = Vec::new();
+            let score = |values: &[f64], next: Next<'_>| {
+                told.push(next(ahead));
+                scored(f64::from(u8::from(values != [0.5, 1.0])), false)
+            };
+            let log = tune("t", &parameters, TuneOptions { searcher, budget }, Seed(4), score, |_| false);
+            for (number, told) in told.iter().enumerate().filter(|(number, _)| number + ahead < budget) {
+                let came: Vec<_> = log.points[number + 1..=number + ahead].iter().map(|point| &point.values).collect();
+                assert_eq!(told.iter().collect::<Vec<_>>(), came, "{searcher:?}, point {number}");
+            }
+        }
     }
 
     #[test]
     fn the_same_seed_gives_the_same_points_and_another_seed_others() {
         let parameters = [parameter(0.0, 1.0, 0.5), parameter(0.0, 9.0, 1.0)];
         let run = |seed| {
-            tune("t", &parameters, TuneOptions::default(), Seed(seed), |x| scored(x[0] + x[1], false), |_| false)
+            tune("t", &parameters, TuneOptions::default(), Seed(seed), |x, _| scored(x[0] + x[1], false), |_| false)
         };
         assert_eq!(run(4), run(4));
         assert_ne!(run(4), run(5));
@@ -270,7 +316,7 @@ mod tests {
         let mut whole = parameter(1.0, 7.0, 3.0);
         whole.integer = true;
         let parameters = [whole, parameter(-2.0, -1.0, -1.5)];
-        let log = tune("t", &parameters, TuneOptions::default(), Seed(9), |x| scored(x[0], false), |_| false);
+        let log = tune("t", &parameters, TuneOptions::default(), Seed(9), |x, _| scored(x[0], false), |_| false);
         for point in &log.points {
             assert!((1.0..=7.0).contains(&point.values[0]) && point.values[0].fract() == 0.0, "{point:?}");
             assert!((-2.0..=-1.0).contains(&point.values[1]), "{point:?}");

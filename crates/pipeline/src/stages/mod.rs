@@ -4,6 +4,7 @@
 //! edit, the options that decide, and the work. Everything else (what is skipped, kept, made again or removed, failures,
 //! progress) is the same for all and stands here.
 
+mod ahead;
 mod cases;
 mod choices;
 mod design;

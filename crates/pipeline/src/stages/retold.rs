@@ -1,6 +1,7 @@
 //! The stages of a suite that goes by accounts: each case is the crash of one incident, reconstructed with the recorded
 //! driver; the system under test takes over before the contact.
 
+use super::ahead::Ahead;
 use super::cases::{case_seed, of_case, scenario, text_of};
 use super::tune::tune_options;
 use super::{Bench, CaseStage};
@@ -20,9 +21,10 @@ use recrash_model::run::JudgedRun;
 use recrash_model::scenario::ScenarioDraft;
 use recrash_model::selection::Cluster;
 use recrash_model::triage::TRIAGE_FORMAT;
-use recrash_model::tuning::{Aim, TunePoint};
+use recrash_model::tuning::{Aim, Parameter, TunePoint};
 use recrash_reconstruct::{held_against, open_choices, reconstruct, reconstruct_with};
 use recrash_roads::{RunError, Scenario};
+use recrash_search::Next;
 use recrash_sim::{Ego, Native};
 
 /// The stages, in order.
@@ -110,6 +112,17 @@ fn staged(account: &Account) -> Result<Staged, String> {
     }
 }
 
+/// The same with these values for what the account leaves open.
+fn staged_with(account: &Account, open: &[Parameter], values: &[f64]) -> Result<ScenarioDraft, String> {
+    let made = reconstruct_with(account, open, values).map_err(|why| why.label().to_owned())?;
+    match made.missed() {
+        None => Ok(made.draft),
+        Some(missed) => {
+            Err(format!("not as told: {} is {}, not {}", missed.kind.label(), missed.observed, missed.expected))
+        }
+    }
+}
+
 /// A reconstruction as a case of the suite.
 fn named(mut draft: ScenarioDraft, bench: &Bench, cluster: &Cluster) -> ScenarioDraft {
     draft.id.clone_from(&cluster.scenario_id);
@@ -163,20 +176,14 @@ fn tune(bench: &Bench, cluster: &Cluster) -> Result<Files, PipelineError> {
         true => names::first_run(id),
         false => names::recorded_run(id),
     })?;
-    let draft_of = |values: &[f64]| -> Result<ScenarioDraft, String> {
-        if values.iter().zip(&open).all(|(value, parameter)| *value == parameter.start) {
-            return Ok(scenario.draft().clone());
-        }
-        let made = reconstruct_with(&account, &open, values).map_err(|why| why.label().to_owned())?;
-        match made.missed() {
-            Some(missed) => {
-                Err(format!("not as told: {} is {}, not {}", missed.kind.label(), missed.observed, missed.expected))
-            }
-            None => Ok(named(made.draft, bench, cluster)),
-        }
+    let is_start = |values: &[f64]| values.iter().zip(&open).all(|(value, parameter)| *value == parameter.start);
+    let draft_of = |values: &[f64]| match is_start(values) {
+        true => Ok(scenario.draft().clone()),
+        false => staged_with(&account, &open, values).map(|draft| named(draft, bench, cluster)),
     };
+    let drafts = Ahead::new(draft_of);
     let make = |values: &[f64]| {
-        let checked = recrash_roads::check(draft_of(values)?);
+        let checked = recrash_roads::check(drafts.of(values)?);
         checked
             .map(|checked| checked.value)
             .map_err(|told| told.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "))
@@ -196,8 +203,15 @@ fn tune(bench: &Bench, cluster: &Cluster) -> Result<Files, PipelineError> {
     let enough = |point: &TunePoint| open.is_empty() || point.number == 0 && point.score.refused.is_empty() && sound;
     let seed = case_seed(suite, cluster).child("tune");
     let options = tune_options(suite)?;
-    let log = recrash_search::tune(id, &open, options, seed, |values| scoring.score(values), enough);
-    let tuned = draft_of(&log.points[log.best].values).map_err(|why| PipelineError::scenario(id, why))?;
+    let score = |values: &[f64], next: Next<'_>| {
+        // Where the start is enough nothing comes next.
+        if !is_start(values) {
+            drafts.prepare(values, next);
+        }
+        scoring.score(values)
+    };
+    let log = recrash_search::tune(id, &open, options, seed, score, enough);
+    let tuned = drafts.of(&log.points[log.best].values).map_err(|why| PipelineError::scenario(id, why))?;
     Ok(vec![
         (names::tuned(id), to_json(&tuned)),
         (names::tune_log(id), to_compact_json(&log)),

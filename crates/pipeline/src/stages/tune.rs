@@ -54,7 +54,7 @@ fn tune(bench: &Bench, cluster: &Cluster) -> Result<Files, PipelineError> {
     let sound = is_sound_contact(&first.rollout) && suite.options().aim == Aim::Failure;
     let enough = |point: &TunePoint| point.number == 0 && point.score.refused.is_empty() && sound;
     let seed = case_seed(suite, cluster).child("tune");
-    let search = || recrash_search::tune(id, &parameters, options, seed, |values| scoring.score(values), enough);
+    let search = || recrash_search::tune(id, &parameters, options, seed, |values, _| scoring.score(values), enough);
     let cast = &suite.options().cast;
     let (log, agent): (TuneLog, AgentLog) = match suite.models().filter(|_| cast.tune != RULES && !cluster.invented) {
         None => (search(), AgentLog::rules()),

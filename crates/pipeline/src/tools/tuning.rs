@@ -55,7 +55,7 @@ pub fn tune_scenario(
     let sound = is_sound_contact(&first.rollout);
     let enough = |point: &TunePoint| point.number == 0 && point.score.refused.is_empty() && sound;
     let seed = Seed(seed).child("tune").child(&draft.id);
-    let log = recrash_search::tune(&draft.id, &parameters, options, seed, |values| scoring.score(values), enough);
+    let log = recrash_search::tune(&draft.id, &parameters, options, seed, |values, _| scoring.score(values), enough);
     let tuned = make(&log.points[log.best].values).map_err(|why| PipelineError::scenario(&draft.id, why))?;
     let run = run(&tuned)?;
     Ok(TunedScenario { scenario: tuned, run, log })

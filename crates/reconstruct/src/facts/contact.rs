@@ -50,8 +50,14 @@ pub(super) fn order(
 ) -> (bool, String) {
     let there_s = |(track, reach_m): (&ActorTrack, f64)| {
         let until = (time_s / LOOKS_S).round() as usize + 1;
+        // Farther off it covers nothing, however it is turned.
+        let far_m = track.length_m + track.width_m + 2.0 * reach_m;
         let covers = |step: &usize| {
-            let outline = outline_at(track, LOOKS_S * *step as f64);
+            let pose = pose_at(track, LOOKS_S * *step as f64);
+            if pose.position.distance(point) > far_m {
+                return false;
+            }
+            let outline = OrientedBox::new(pose, track.length_m, track.width_m);
             let local = outline.to_local(point);
             local.x.abs() <= outline.half_length + reach_m && local.y.abs() <= outline.half_width + reach_m
         };
@@ -117,12 +123,17 @@ pub(super) fn swung(rollout: &Rollout, owner: &ActorTrack, part: &OrientedBox, t
 
 /// A box between two steps.
 fn outline_at(track: &ActorTrack, time_s: f64) -> OrientedBox {
+    OrientedBox::new(pose_at(track, time_s), track.length_m, track.width_m)
+}
+
+/// Its pose.
+fn pose_at(track: &ActorTrack, time_s: f64) -> Pose {
     let at = (time_s / STEP_S).min((track.states.len() - 1) as f64);
     let (step, share) = (at.floor() as usize, at - at.floor());
     let (from, to) = (&track.states[step], &track.states[(step + 1).min(track.states.len() - 1)]);
     let position = from.position() + (to.position() - from.position()) * share;
     let heading = from.heading + math::wrap_angle(to.heading - from.heading) * share;
-    OrientedBox::new(Pose { position, heading }, track.length_m, track.width_m)
+    Pose { position, heading }
 }
 
 /// Whom else the partner touched before.

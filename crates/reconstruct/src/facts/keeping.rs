@@ -89,7 +89,7 @@ fn is_off(told: &Told, scenario: &Scenario, track: &ActorTrack, state: &ActorSta
     let strip = told.cp.lane.and_then(strip_of);
     let narrow = track.width_m < NARROW_M;
     let mut off = true;
-    for lane in &network.lanes {
+    for lane in network.lanes.iter().filter(|lane| !lane.is_far(state.position())) {
         let (s_m, t_m) = lane.local(state.position());
         if !(0.0..=lane.length_m).contains(&s_m) || t_m.abs() > 0.5 * lane.width_at(s_m) {
             continue;

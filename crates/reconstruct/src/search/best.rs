@@ -9,7 +9,7 @@ use crate::search::reconstruction::{Reconstruction, is_deed_left_open};
 use crate::told::crash::Told;
 use crate::told::others::Extra;
 use crate::touch::staging::Staging;
-use crate::touch::stagings::{self, MOST_TRIES};
+use crate::touch::stagings::{MOST_TRIES, Stagings};
 use recrash_model::account::{Account, Untold};
 use recrash_model::metrics::{Check, CheckKind, CheckResult, Verdict};
 use recrash_roads::check_on;
@@ -39,11 +39,13 @@ pub(super) struct Found {
 
 pub(super) fn searched(told: Told, account: &Account, most_runs: usize) -> Result<Found, Untold> {
     let mut search = Search { most_runs, ..Search::default() };
-    let mut variants: Vec<_> = told.variants().into_iter().map(|told| (told, None)).collect();
+    let variants = told.variants();
+    let mut stagings: Vec<_> = variants.iter().map(|_| None).collect();
     'tried: for tries in [0..FIRST_TRIES, FIRST_TRIES..MOST_TRIES] {
-        for (told, stagings) in &mut variants {
-            let (told, stagings) = (&*told, stagings.get_or_insert_with(|| stagings::stagings(told)));
-            for staging in stagings.iter().take(tries.end).skip(tries.start) {
+        for (told, stagings) in variants.iter().zip(&mut stagings) {
+            let stagings = stagings.get_or_insert_with(|| Stagings::of(told));
+            for number in tries.clone() {
+                let Some(staging) = stagings.get(number) else { break };
                 if search.runs(account, told, staging) {
                     break 'tried;
                 }
@@ -99,6 +101,10 @@ impl Search {
         let scenario = checked.value;
         let rollout = recrash_sim::rehearse(&scenario, Ego::Recorded);
         let verdict = Verdict { checks: held::facts(told, &scenario, &rollout) };
+        // What misses more than the best is looked at no closer.
+        if self.best.as_ref().is_some_and(|best| verdict.failures().count() > best.cost.0) {
+            return self.is_enough();
+        }
         let others = strays::others_stray(told, &scenario, &rollout);
         let strays = strays::strays(told, &scenario, &rollout);
         let off = strays::off_its_way(told, &scenario, &rollout);
@@ -123,9 +129,13 @@ impl Search {
                 self.best = Some(found);
             }
         }
+        shows == (0, false, false, 0) && off == 0 || self.is_enough()
+    }
+
+    /// Whether what was found is good enough for so many runs.
+    fn is_enough(&self) -> bool {
         let most = if self.best.as_ref().is_some_and(Best::is_absurd) { ABSURD_RUNS } else { ENOUGH_RUNS };
-        let enough = self.runs >= most && self.best.as_ref().is_some_and(Best::shows_all);
-        shows == (0, false, false, 0) && off == 0 || enough
+        self.runs >= most && self.best.as_ref().is_some_and(Best::shows_all)
     }
 }
 

@@ -5,7 +5,7 @@ use crate::ground::way::Ground;
 use crate::told::crash::Told;
 use crate::told::side::{Turning, size_of};
 use crate::told::zones::{side_of, zones_off};
-use crate::touch::boxes::{cp_points, sv_points, touch, velocity, zone_pairs};
+use crate::touch::boxes::{Meeting, cp_points, sv_points, velocity, zone_pairs};
 use crate::touch::fit::{aside_before_m, is_face_on};
 use crate::touch::headings::headings;
 use crate::touch::lanes;
@@ -16,18 +16,66 @@ use recrash_model::geometry::{OrientedBox, Pose};
 use recrash_model::math;
 use recrash_model::zones::ContactZone;
 use std::rc::Rc;
+use std::vec;
 
-/// Ways in which their bodies touch.
-pub(super) fn bodies(told: &Told, ground: &Rc<Ground>) -> Vec<Staging> {
-    let mut found: Vec<Staging> = Vec::new();
-    let mut trial = 0;
-    for sv_s_m in ground.places() {
-        let Some(sv) = sv_at_contact(told, ground, sv_s_m) else { continue };
+/// Ways in which their bodies touch, in the order of trial: those of one place, or of one heading there, at a time.
+pub(super) struct Bodies<'a> {
+    told: &'a Told,
+    ground: Rc<Ground>,
+    pairs: Vec<(ContactZone, ContactZone)>,
+    /// Places of the ego that are yet to be tried; where it is, and headings of the partner that are to be tried there.
+    places: vec::IntoIter<f64>,
+    sv_at: (f64, Pose),
+    headings: vec::IntoIter<(f64, f64)>,
+    /// So many ways were tried, and the nearest of them is so many steps off the told zones.
+    trial: usize,
+    nearest: u32,
+    is_over: bool,
+}
+
+impl Iterator for Bodies<'_> {
+    type Item = Vec<Staging>;
+
+    fn next(&mut self) -> Option<Vec<Staging>> {
+        let found = match self.headings.next() {
+            Some(heading) => self.touching(heading),
+            None => match self.places.next() {
+                Some(sv_s_m) => self.coming_to(sv_s_m),
+                None => return self.sweeping(),
+            },
+        };
+        self.nearest = found.iter().map(|staging| staging.cost.0).fold(self.nearest, u32::min);
+        Some(found)
+    }
+}
+
+impl<'a> Bodies<'a> {
+    pub(super) fn of(told: &'a Told, ground: Rc<Ground>) -> Self {
+        Self {
+            told,
+            pairs: zone_pairs(told),
+            places: ground.places().into_iter(),
+            ground,
+            sv_at: (0.0, Pose::default()),
+            headings: Vec::new().into_iter(),
+            trial: 0,
+            nearest: u32::MAX,
+            is_over: false,
+        }
+    }
+
+    /// Goes on to a place of the ego; the partner that comes behind it by its way.
+    fn coming_to(&mut self, sv_s_m: f64) -> Vec<Staging> {
+        let told = self.told;
+        let Some(sv) = sv_at_contact(told, &self.ground, sv_s_m) else { return Vec::new() };
         let behind_m = 0.5 * (size_of(&told.sv).0 + size_of(&told.cp).0);
-        let behind = ground.sv_pose((sv_s_m - behind_m).max(0.0)).heading;
+        let behind = self.ground.sv_pose((sv_s_m - behind_m).max(0.0)).heading;
+        self.sv_at = (sv_s_m, sv);
+        self.headings = headings(told, sv.heading, behind).into_iter();
+        let mut found = Vec::new();
         for beside_m in follows_beside(told) {
-            trial += 1;
-            let found_there = follows(told, ground, (sv_s_m, sv), beside_m);
+            self.trial += 1;
+            let found_there = follows(told, &self.ground, self.sv_at, beside_m);
             let Some((back_m, cp, (sv_seen, cp_seen))) = found_there else { continue };
             let (sv_off, cp_off) = (zones_off(&told.sv.zones, sv_seen), zones_off(&told.cp.zones, cp_seen));
             // Zones are told to a step: its way through the turn is worth more than that.
@@ -37,78 +85,82 @@ pub(super) fn bodies(told: &Told, ground: &Rc<Ground>) -> Vec<Staging> {
                 continue;
             }
             let off = if fits { 0 } else { sv_off + cp_off };
-            let (ground, cp_follows_m) = (Rc::clone(ground), Some((sv_s_m - back_m, beside_m)));
-            found.push(Staging {
-                ground,
-                sv_s_m,
-                sv,
-                cp,
-                cp_came: 0.0,
-                cp_follows_m,
-                bend: None,
-                door: None,
-                cost: (off, trial),
-            });
+            let cp_follows_m = Some((sv_s_m - back_m, beside_m));
+            found.push(Staging { cp_follows_m, ..self.staging((0.0, cp), (off, self.trial)) });
             if fits {
                 break;
             }
         }
-        for (came, heading) in headings(told, sv.heading, behind) {
-            for (sv_zone, cp_zone) in zone_pairs(told) {
-                for &sv_point in sv_points(told, sv_zone) {
-                    for &cp_point in cp_points(told, cp_zone) {
-                        trial += 1;
-                        let Some((cp, sv_seen, cp_seen)) = touch(told, sv, heading, sv_point, cp_point) else {
-                            continue;
-                        };
-                        let off = zones_off(&told.sv.zones, sv_seen) + zones_off(&told.cp.zones, cp_seen);
-                        let beside = told.scrapes() || told.passes_narrow();
-                        let face_on = beside && is_face_on(told, sv, cp);
-                        let along = (told.runs_into_rear() || told.backs_in_line()) && !is_face_on(told, sv, cp);
-                        let round = math::wrap_angle(heading - came).abs();
-                        let swings = told.goes_straight_behind() && round > SWINGS_RAD
-                            || told.goes_straight_beside() && round > STRAIGHT_RAD;
-                        // Who keeps its lane behind an ego that leaves its own does not turn with that.
-                        let turned = math::wrap_angle(heading - came).abs() > KEEPS_RAD;
-                        let off_m = (cp.position.y - ground.sv_pose(sv_s_m).position.y).abs();
-                        let leaves = told.keeps_straight_behind() && (turned || off_m > KEEPS_M);
-                        let late = told.goes_straight_behind() && sv.heading.abs() > EARLY_RAD;
-                        let squeezed = told.turns_from_beside() && aside_before_m(told, sv, cp, came) < BESIDE_M;
-                        let other_way = told.is_struck_otherwise((sv_seen, cp_seen));
-                        // Who turns across an oncoming partner meets it in that one's lane.
-                        let before = told.sv.turning == Turning::Left && told.is_met_on_wrong_side(ground, cp);
-                        let worse = [
-                            (before, BEFORE_LANE),
-                            (face_on || along, FACE_ON),
-                            (swings, SWINGS),
-                            (leaves, LEAVES),
-                            (told.goes_right_way(cp), RIGHT_WAY),
-                            (late, LATE),
-                            (squeezed, SQUEEZED),
-                            (other_way, OTHER_WAY),
-                            (told.strikes_otherwise((sv, cp)), STRIKES),
-                            (told.crosses_off_lanes(ground, cp), OFF_LANES),
-                            (told.is_parked_otherwise(ground, cp), PARKED_OTHERWISE),
-                            (told.swings_out(ground, heading - came), SWINGS_OUT),
-                            (told.stays_in_lane(ground, cp), STAYS_IN_LANE),
-                        ];
-                        let worse: u32 = worse.iter().filter(|(is, _)| *is).map(|(_, steps)| steps).sum();
-                        let bends = lanes::bends(told, (ground, sv), cp, came);
-                        let cost = (off + worse, bends as usize * BENT + trial);
-                        let (ground, bend, door) = (Rc::clone(ground), None, None);
-                        let cp_follows_m = None;
-                        found.push(Staging { ground, sv_s_m, sv, cp, cp_came: came, cp_follows_m, bend, door, cost });
-                    }
+        found
+    }
+
+    /// The partner with this heading, as it came and at the contact.
+    fn touching(&mut self, (came, heading): (f64, f64)) -> Vec<Staging> {
+        let (told, sv) = (self.told, self.sv_at.1);
+        let mut found = Vec::new();
+        let Some(meeting) = Meeting::of(told, sv, heading) else { return found };
+        for &(sv_zone, cp_zone) in &self.pairs {
+            for &sv_point in sv_points(told, sv_zone) {
+                for &cp_point in cp_points(told, cp_zone) {
+                    self.trial += 1;
+                    let Some((cp, sv_seen, cp_seen)) = meeting.touch(sv_point, cp_point) else { continue };
+                    let off = zones_off(&told.sv.zones, sv_seen) + zones_off(&told.cp.zones, cp_seen);
+                    let worse = self.worse((came, cp), (sv_seen, cp_seen));
+                    let bends = lanes::bends(told, (&self.ground, sv), cp, came);
+                    found.push(self.staging((came, cp), (off + worse, bends as usize * BENT + self.trial)));
                 }
             }
         }
+        found
     }
-    let nearest = found.iter().map(|staging| staging.cost.0).min().unwrap_or(u32::MAX);
-    let bends = nearest >= if told.rubs_by() { RUBS_OFF } else { FAR_OFF };
-    if bends && !told.goes_straight_beside() {
-        found.extend(sweep::stagings(told, ground, trial, nearest));
+
+    /// The partner that turns as it touches, where nothing nearer was found.
+    fn sweeping(&mut self) -> Option<Vec<Staging>> {
+        let far = self.nearest >= if self.told.rubs_by() { RUBS_OFF } else { FAR_OFF };
+        if std::mem::replace(&mut self.is_over, true) || !far || self.told.goes_straight_beside() {
+            return None;
+        }
+        Some(sweep::stagings(self.told, &self.ground, self.trial, self.nearest))
     }
-    found
+
+    /// How much worse it is than the zones that meet, in steps from those that are told.
+    fn worse(&self, (came, cp): (f64, Pose), seen: (ContactZone, ContactZone)) -> u32 {
+        let (told, ground, (sv_s_m, sv)) = (self.told, &*self.ground, self.sv_at);
+        let beside = told.scrapes() || told.passes_narrow();
+        let face_on = beside && is_face_on(told, sv, cp);
+        let along = (told.runs_into_rear() || told.backs_in_line()) && !is_face_on(told, sv, cp);
+        let round = math::wrap_angle(cp.heading - came).abs();
+        let swings =
+            told.goes_straight_behind() && round > SWINGS_RAD || told.goes_straight_beside() && round > STRAIGHT_RAD;
+        // Who keeps its lane behind an ego that leaves its own does not turn with that.
+        let off_m = (cp.position.y - ground.sv_pose(sv_s_m).position.y).abs();
+        let leaves = told.keeps_straight_behind() && (round > KEEPS_RAD || off_m > KEEPS_M);
+        let late = told.goes_straight_behind() && sv.heading.abs() > EARLY_RAD;
+        let squeezed = told.turns_from_beside() && aside_before_m(told, sv, cp, came) < BESIDE_M;
+        // Who turns across an oncoming partner meets it in that one's lane.
+        let before = told.sv.turning == Turning::Left && told.is_met_on_wrong_side(ground, cp);
+        let worse = [
+            (before, BEFORE_LANE),
+            (face_on || along, FACE_ON),
+            (swings, SWINGS),
+            (leaves, LEAVES),
+            (told.goes_right_way(cp), RIGHT_WAY),
+            (late, LATE),
+            (squeezed, SQUEEZED),
+            (told.is_struck_otherwise(seen), OTHER_WAY),
+            (told.strikes_otherwise((sv, cp)), STRIKES),
+            (told.crosses_off_lanes(ground, cp), OFF_LANES),
+            (told.is_parked_otherwise(ground, cp), PARKED_OTHERWISE),
+            (told.swings_out(ground, cp.heading - came), SWINGS_OUT),
+            (told.stays_in_lane(ground, cp), STAYS_IN_LANE),
+        ];
+        worse.iter().filter(|(is, _)| *is).map(|(_, steps)| steps).sum()
+    }
+
+    fn staging(&self, (cp_came, cp): (f64, Pose), cost: (u32, usize)) -> Staging {
+        let (ground, (sv_s_m, sv)) = (Rc::clone(&self.ground), self.sv_at);
+        Staging { ground, sv_s_m, sv, cp, cp_came, cp_follows_m: None, bend: None, door: None, cost }
+    }
 }
 
 /// Where no way of touching is nearer than this to the told zones, the partner turns as it touches; the second of who passes and touches with

@@ -7,7 +7,7 @@ use crate::told::side::{Side, size_of};
 use crate::told::zones::zones_off;
 use recrash_metrics::contact::contact_geometry;
 use recrash_model::account::{ContactState, LeftRight};
-use recrash_model::geometry::{OrientedBox, Pose, Vec2};
+use recrash_model::geometry::{OrientedBox, Pose, Shadows, Vec2};
 use recrash_model::zones::ContactZone;
 
 /// Points of a box's outline, by zone, where it may be touched: shares of half of its length and width.
@@ -59,63 +59,93 @@ fn velocity_along(side: &Side, axis: Vec2) -> Vec2 {
     axis * (backwards * side.speed_mps)
 }
 
-/// Places the partner so that the two points meet, and takes it back to where the boxes just touch; the zones that then
-/// meet. `None` where they do not close on each other there.
-pub(super) fn touch(
-    told: &Told,
-    sv: Pose,
+/// The two with these headings, who close on each other: tried with many pairs of points that meet.
+pub(super) struct Meeting {
+    own: OrientedBox,
+    /// The partner, wherever it is, and what it draws; its heading.
+    other: OrientedBox,
+    rig: Option<Rig>,
     heading: f64,
-    sv_point: (f64, f64),
-    cp_point: (f64, f64),
-) -> Option<(Pose, ContactZone, ContactZone)> {
-    let (sv_length, sv_width) = size_of(&told.sv);
-    let (cp_length, cp_width) =
-        told.rig.map_or_else(|| size_of(&told.cp), |rig| (rig.trailer.length_m, rig.trailer.width_m));
-    let own = OrientedBox::new(sv, sv_length, sv_width);
-    let met = own.to_world(Vec2::new(sv_point.0 * own.half_length, sv_point.1 * own.half_width));
-    let other = OrientedBox::new(Pose { heading, ..sv }, cp_length, cp_width);
-    let axis = other.axis;
-    let centre = met - axis * (cp_point.0 * 0.5 * cp_length) - axis.left() * (cp_point.1 * 0.5 * cp_width);
-    let velocities = (velocity_along(&told.sv, own.axis), velocity_along(&told.cp, axis));
-    let closing = velocities.1 - velocities.0;
-    let speed = closing.length();
-    if speed < 0.05 {
-        return None;
+    /// Of the ego, and of the partner. [m/s]
+    velocities: (Vec2, Vec2),
+    /// The way by which the partner comes, seen from the ego.
+    way: Vec2,
+    /// When the two boxes overlap: never where their middles are farther apart. [m]
+    shadows: Shadows,
+    reach_m: f64,
+}
+
+impl Meeting {
+    /// Nothing where the one does not come nearer to the other.
+    pub(super) fn of(told: &Told, sv: Pose, heading: f64) -> Option<Self> {
+        let (sv_length, sv_width) = size_of(&told.sv);
+        let (cp_length, cp_width) =
+            told.rig.map_or_else(|| size_of(&told.cp), |rig| (rig.trailer.length_m, rig.trailer.width_m));
+        let own = OrientedBox::new(sv, sv_length, sv_width);
+        let other = OrientedBox::new(Pose { heading, ..sv }, cp_length, cp_width);
+        let velocities = (velocity_along(&told.sv, own.axis), velocity_along(&told.cp, other.axis));
+        let closing = velocities.1 - velocities.0;
+        let speed = closing.length();
+        let way = closing * (1.0 / speed);
+        let (shadows, reach_m) = (Shadows::of(&other, &own), other.radius() + own.radius());
+        (speed >= 0.05).then_some(Self { own, other, rig: told.rig, heading, velocities, way, shadows, reach_m })
     }
-    let way = closing * (1.0 / speed);
-    let at = |back_m: f64| OrientedBox { centre: centre - way * back_m, ..other };
-    // Apart some way back, together here or a little later.
-    let (mut inside, mut outside) = (-0.05, None);
-    if !at(inside).overlaps(&own) {
-        return None;
-    }
-    for step in 1..=24 {
-        let back_m = -0.05 + 0.1 * f64::from(step);
-        if !at(back_m).overlaps(&own) {
-            outside = Some(back_m);
-            break;
+
+    /// Places the partner so that the two points meet, and takes it back to where the boxes just touch; the zones that then
+    /// meet. `None` where they do not close on each other there.
+    pub(super) fn touch(&self, sv_point: (f64, f64), cp_point: (f64, f64)) -> Option<(Pose, ContactZone, ContactZone)> {
+        let (own, other) = (&self.own, &self.other);
+        let met = own.to_world(Vec2::new(sv_point.0 * own.half_length, sv_point.1 * own.half_width));
+        let centre =
+            met - other.axis * (cp_point.0 * other.half_length) - other.axis.left() * (cp_point.1 * other.half_width);
+        let at = |back_m: f64| centre - self.way * back_m;
+        let (inside, outside) = self.just_touching(at)?;
+        // They stay apart on the way there.
+        if (1..=12).any(|step| self.overlap(at(outside + 0.25 * f64::from(step)))) {
+            return None;
         }
-        inside = back_m;
+        let at = |back_m: f64| OrientedBox { centre: at(back_m), ..*other };
+        // Who draws a trailer gets by.
+        let gets_by = |rig: Rig| (0..=60).all(|step| !rig.tractor(&at(inside + 0.25 * f64::from(step))).overlaps(own));
+        if !self.rig.is_none_or(gets_by) {
+            return None;
+        }
+        let touching = at(inside - 0.01);
+        let geometry = contact_geometry(own, self.velocities.0, &touching, self.velocities.1);
+        let cp = pose(self.rig, Pose { position: at(inside).centre, heading: self.heading });
+        let cp_zone = self.rig.map_or(geometry.other_zone, |rig| rig.zone(&touching, &geometry));
+        Some((cp, geometry.ego_zone, cp_zone))
     }
-    let mut outside = outside?;
-    for _ in 0..30 {
-        let middle = 0.5 * (inside + outside);
-        if at(middle).overlaps(&own) { inside = middle } else { outside = middle }
+
+    /// Whether the two overlap, with the partner's middle here.
+    fn overlap(&self, centre: Vec2) -> bool {
+        let apart = self.own.centre - centre;
+        apart.length_squared() <= self.reach_m * self.reach_m && self.shadows.meet(apart)
     }
-    // They stay apart on the way there.
-    if (1..=12).any(|step| at(outside + 0.25 * f64::from(step)).overlaps(&own)) {
-        return None;
+
+    /// How far back the partner just touches, and how far it is just apart; nothing where it is not both. [m]
+    fn just_touching(&self, at: impl Fn(f64) -> Vec2) -> Option<(f64, f64)> {
+        let overlap = |back_m: f64| self.overlap(at(back_m));
+        // Apart some way back, together here or a little later.
+        let (mut inside, mut outside) = (-0.05, None);
+        if !overlap(inside) {
+            return None;
+        }
+        for step in 1..=24 {
+            let back_m = -0.05 + 0.1 * f64::from(step);
+            if !overlap(back_m) {
+                outside = Some(back_m);
+                break;
+            }
+            inside = back_m;
+        }
+        let mut outside = outside?;
+        for _ in 0..30 {
+            let middle = 0.5 * (inside + outside);
+            if overlap(middle) { inside = middle } else { outside = middle }
+        }
+        Some((inside, outside))
     }
-    // Who draws a trailer gets by.
-    let gets_by = |rig: Rig| (0..=60).all(|step| !rig.tractor(&at(inside + 0.25 * f64::from(step))).overlaps(&own));
-    if !told.rig.is_none_or(gets_by) {
-        return None;
-    }
-    let touching = at(inside - 0.01);
-    let geometry = contact_geometry(&own, velocities.0, &touching, velocities.1);
-    let cp = pose(told.rig, Pose { position: at(inside).centre, heading });
-    let cp_zone = told.rig.map_or(geometry.other_zone, |rig| rig.zone(&touching, &geometry));
-    Some((cp, geometry.ego_zone, cp_zone))
 }
 
 /// The zones that meet where something lies across the ego's way.

@@ -8,7 +8,7 @@ use crate::told::crash::Told;
 use crate::told::edge::LONG_M;
 use crate::told::side::size_of;
 use crate::told::zones::zones_off;
-use crate::touch::boxes::{points, touch};
+use crate::touch::boxes::{Meeting, points};
 use crate::touch::staging::Staging;
 use crate::usual::LANE_M;
 use recrash_model::account::LeftRight;
@@ -50,7 +50,8 @@ pub(super) fn stagings(told: &Told, ground: &Ground, side: LeftRight) -> Vec<Sta
             for &(turned, cp_point) in &ways(told, right) {
                 trial += 1;
                 let heading = math::wrap_angle(along + turned);
-                let Some((cp, sv_seen, cp_seen)) = touch(told, sv, heading, sv_point, cp_point) else { continue };
+                let touched = Meeting::of(told, sv, heading).and_then(|meeting| meeting.touch(sv_point, cp_point));
+                let Some((cp, sv_seen, cp_seen)) = touched else { continue };
                 let cp_off = if told.thing.is_some() { 0 } else { zones_off(&told.cp.zones, cp_seen) };
                 let cost = (zones_off(&told.sv.zones, sv_seen) + cp_off, trial);
                 found.push(Staging {
