@@ -21,8 +21,8 @@ use crate::lexicon::{Relation, Sense};
 use crate::token::{Token, TokenKind};
 use crate::world::{Actor, SUBJECT};
 use recrash_model::account::{
-    Account, Act, ActFact, Compass, ContactState, Fact, KindGroup, LaneWord, LeftRight, Origin, Party, RoadFeature,
-    Source, told,
+    Account, Act, ActFact, Compass, ContactState, Fact, Kind, KindGroup, LaneWord, LeftRight, Origin, Party,
+    RoadFeature, Source, told,
 };
 use recrash_model::zones::ContactZone as Z;
 
@@ -116,6 +116,16 @@ fn is_being_completed(reading: &Reading<'_>, fact: &ActFact) -> bool {
     let ing = ["completing", "finishing"].iter().any(|word| text.starts_with(word));
     let frame = || reading.story.frames.iter().find(|frame| reading.story.tokens[frame.first].start == *start);
     ing && frame().is_none_or(|frame| frame.joint != Some(Joint::After))
+}
+
+/// "coming along the road from the right", "went through on green from its left"; "the second lane from the right" is a lane.
+fn comes_from_side(words: &[&str]) -> bool {
+    let counts = |word: &str| matches!(word, "second" | "third" | "fourth" | "lane" | "lanes");
+    (0..words.len()).any(|at| {
+        let side = matches!(words[at..], ["from", "the" | "its", "left" | "right", ..]);
+        let lane = words.get(at + 3).is_some_and(|word| counts(word)) || at > 0 && counts(words[at - 1]);
+        side && !lane
+    })
 }
 
 fn is_flank(zone: Z) -> bool {
@@ -577,18 +587,12 @@ impl<'a> Case<'a> {
         if crossing { self.across(side) } else { None }
     }
 
-    /// "A taxi from the right entered the intersection"; "the second lane from the right" is a lane.
+    /// "A taxi from the right entered the intersection", "a taxi was going through from the right"; "the second lane from the right" is a lane.
     fn comes_into_it(&self, frame: &Frame) -> bool {
         let sentence = self.reading.story.sentences[frame.sentence];
         let words: Vec<&str> =
             self.reading.story.tokens[sentence.first..sentence.end].iter().map(|token| token.text.as_str()).collect();
-        let counts = |word: &str| matches!(word, "second" | "third" | "fourth" | "lane" | "lanes");
-        let from = (0..words.len()).any(|at| {
-            let side = matches!(words[at..], ["from", "the" | "its", "left" | "right", ..]);
-            let lane = words.get(at + 3).is_some_and(|word| counts(word)) || at > 0 && counts(words[at - 1]);
-            side && !lane
-        });
-        from && words.iter().any(|word| matches!(*word, "intersection" | "junction"))
+        comes_from_side(&words) && words.iter().any(|word| matches!(*word, "intersection" | "junction" | "through"))
     }
 
     /// "traveling from left to right", "came at a right angle from its left", "coming along the road from the right".
@@ -603,9 +607,7 @@ impl<'a> Case<'a> {
                 words.windows(2).any(|pair| pair == ["right", "angle"] || pair == ["right", "angles"])
                     || words.windows(3).any(|row| matches!(row, ["left", "to", "right"] | ["right", "to", "left"]))
                     || words.contains(&"perpendicular")
-                    || words
-                        .windows(4)
-                        .any(|row| matches!(row, ["road" | "street", "from", "the" | "its", "left" | "right"]))
+                    || comes_from_side(&words)
             })
     }
 
@@ -640,7 +642,8 @@ impl<'a> Case<'a> {
             return None;
         }
         let group = told(&self.partner.kind).map(|kind| kind.group());
-        let walks = matches!(group, Some(KindGroup::OnFoot | KindGroup::Animal));
+        let robot = told(&self.partner.kind) == Some(Kind::DeliveryRobot);
+        let walks = matches!(group, Some(KindGroup::OnFoot | KindGroup::Animal)) || robot;
         if walks { self.across(side) } else { self.beside(side) }
     }
 
