@@ -152,6 +152,8 @@ pub(super) fn junction(told: &Told, crossing: bool) -> Ground {
     let at_line: Vec<f64> = match told.sv.state {
         _ if told.enters() => Vec::new(),
         ContactState::Stopped if told.sv.control.is_some() && told.sv.turning == Turning::No => match queue_m {
+            // At the line, before the crosswalk.
+            None if told.crosses_at_walk() => vec![-0.5 * size_of(&told.sv).0 - AT_LINE_M, -5.0, -8.0],
             Some(queue_m) => vec![-queue_m, -queue_m - 2.0],
             None => vec![-5.0, -8.0],
         },
@@ -214,6 +216,7 @@ pub(super) fn junction(told: &Told, crossing: bool) -> Ground {
     let beside = if crosses { usual.to_vec() } else { beside };
     let across = Across { lanes, lane, oncoming: if one_way || one_sided { 0 } else { lanes }, beside };
     let ground = with_way(map, vec!["own-".to_owned(), exit.to_owned()], across, places, true);
+    let ground = if at_line.is_empty() { ground.at_walk(told) } else { ground };
     let ground = if at_kerb { ground.at_kerb() } else { ground }.over_line(told);
     if told.sv.turned { ground.after_turn() } else { ground }
 }

@@ -4,9 +4,9 @@ use crate::told::crash::Told;
 use crate::told::layout::strip_of;
 use crate::told::near::{Does, Near};
 use crate::told::others::{Extra, Role};
-use crate::told::side::Turning;
+use crate::told::side::{Turning, size_of};
 use crate::told::zones::side_of;
-use crate::usual::LANE_M;
+use crate::usual::{LANE_M, NARROW_M};
 use recrash_model::account::{ContactState, KindGroup, LaneLine, LaneWord, LeftRight, Origin};
 use recrash_model::template::Movement;
 use recrash_model::zones::ContactZone;
@@ -124,10 +124,11 @@ fn passes_right(told: &Told) -> bool {
     let goes = matches!(told.cp.movement, Some(Movement::ChangingLanes | Movement::Merging | Movement::Passing));
     let goes = goes && moves && told.cp.aside == Some(LeftRight::Right) && !told.is_at_kerb();
     let by = moves && told.sv.zones.iter().any(touched) || passes || goes;
-    // Who comes across on foot needs no lane there.
-    let drives = !told.comes_across();
+    // Who comes across on foot needs no lane there, nor who is narrow, and comes by between the ego and the kerb.
+    let squeezes = told.layout.along_kerb && size_of(&told.cp).1 < NARROW_M;
+    let drives = !told.comes_across() && !squeezes;
     in_lane && drives && matches!(told.origin, Origin::Beside { side: LeftRight::Right })
-        || in_lane && told.origin == Origin::Behind && by
+        || in_lane && !squeezes && told.origin == Origin::Behind && by
 }
 
 impl Told {

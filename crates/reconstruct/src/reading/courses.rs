@@ -152,7 +152,9 @@ impl Told {
         let nears = before().any(|fact| fact.act == Act::Slow) || words.any(|words| words.contains("approach"));
         let across = matches!(self.origin, Origin::Beside { .. }) && self.cp.turning == self.sv.turning;
         let before_turn = comes_along && (into_rear || nears && (behind || across));
-        if unsaid && (slows && (into_rear || behind && passed) || turns && before_turn) {
+        // Who walks over the crosswalk before it does so before the turn.
+        let walks = self.crosses_at_walk() && sv.did(Act::SetOff);
+        if unsaid && (slows && (into_rear || behind && passed || walks) || turns && before_turn) {
             self.sv.turns_later = turns && !self.enters();
         }
     }

@@ -33,6 +33,11 @@ impl Layout {
             narrow: has(RoadFeature::NarrowStreet),
             one_way: has(RoadFeature::OneWay),
             splits: splits_lanes(partner),
+            crosswalk: is_told_on(account, partner, &["crosswalk", "sidewalk"])
+                && !is_told_on(account, partner, &BESIDE_WALK),
+            beside_crosswalk: is_told_on(account, partner, &BESIDE_WALK),
+            along_kerb: is_told_on(account, partner, &["between"]) && is_told_on(account, partner, &BESIDE_KERB),
+            abreast: drives_abreast(account, partner),
             centre_line: has(RoadFeature::DoubleYellowLine),
             right_lane: goes_out_right(account, partner),
             turn_lane: has(RoadFeature::TurnLane) && goes_to_turn_lane(account, partner)
@@ -50,6 +55,36 @@ impl Layout {
 fn splits_lanes(party: &Party) -> bool {
     let between = |text: String| text.contains("splitting") || text.ends_with("between");
     party.acts.iter().any(|fact| fact.act == Act::Pass && !fact.after_contact && between(text(&fact.source)))
+}
+
+/// Words for somebody that crosses where no crosswalk is.
+const BESIDE_WALK: [&str; 4] = ["outside of", "ahead of the crosswalk", "mid-block", "midblock"];
+
+/// Words for what is at the edge of the road.
+const BESIDE_KERB: [&str; 4] = ["curb", "kerb", "gutter", "parked"];
+
+/// Whether words for the way of the partner, or for what it did before the contact, hold one of these: "rode off the sidewalk".
+fn is_told_on(account: &Account, partner: &Party, words: &[&str]) -> bool {
+    let acts = partner.acts.iter().filter(|fact| !fact.after_contact).map(|fact| &fact.source);
+    let from = account.came_from.iter().map(|fact| &fact.source);
+    let lane = partner.lane.iter().map(|fact| &fact.source);
+    acts.chain(from).chain(lane).map(text).any(|text| words.iter().any(|word| text.contains(word)))
+}
+
+/// Words for two that drive side by side, and for one that comes up to the other.
+const ABREAST: [&str; 8] =
+    ["next to", "alongside", "side by side", "side-by-side", "abreast", "same pace", "beside it", "beside the"];
+const COMES_UP: [&str; 6] = ["came up", "coming up", "approach", "overt", "pass", "behind"];
+
+/// Whether words for the place of a partner beside the ego have the two drive side by side: "a van was next to it in the left lane"; not who
+/// "came up alongside".
+fn drives_abreast(account: &Account, partner: &Party) -> bool {
+    let beside = account.came_from.as_ref().filter(|fact| matches!(fact.value, Origin::Beside { .. }));
+    let passes = matches!(told(&partner.movement), Some(Movement::Passing)) || partner.did(Act::Pass);
+    beside.map(|fact| text(&fact.source)).is_some_and(|text| {
+        let has = |words: &[&str]| words.iter().any(|word| text.contains(word));
+        !passes && has(&ABREAST) && !has(&COMES_UP)
+    })
 }
 
 /// Whether the partner is told in a lane for left turns beside an ego in the left lane, or goes out to its left there, past the ego.

@@ -8,13 +8,16 @@ use recrash_model::account::{
     Act, ActFact, ContactState, Control, ControlDevice, Kind, KindGroup, LeftRight, Manner, Obeyed, Party, SignalState,
     Source, SpeedMeaning, Standing, told,
 };
+use recrash_model::kinds::PartnerKind;
 use recrash_model::template::Movement;
 use recrash_model::zones::ContactZone;
 
 /// What is told of one side.
 pub(super) fn side(party: &Party, kind: Option<Kind>, assumed: &mut Vec<String>, who: &str) -> Side {
     let kind = kind.or_else(|| told(&party.kind));
-    let partner_kind = kind.and_then(Kind::partner_kind);
+    // A robot of the sidewalk is no vehicle of the road.
+    let robot = kind.filter(|kind| *kind == Kind::DeliveryRobot).map(|_| PartnerKind::OtherNonMotorist);
+    let partner_kind = robot.or_else(|| kind.and_then(Kind::partner_kind));
     if partner_kind.is_none() && who == "partner" {
         assumed.push("the partner is a passenger car".to_owned());
     }

@@ -48,6 +48,13 @@ pub(crate) struct Layout {
     pub(crate) one_way: bool,
     /// The partner rides or drives between two lanes: "lane-splitting".
     pub(crate) splits: bool,
+    /// The partner comes over the crosswalk, or off the sidewalk; and it is told to have been beside the crosswalk.
+    pub(crate) crosswalk: bool,
+    pub(crate) beside_crosswalk: bool,
+    /// It comes by between the ego and the kerb, or who is parked there.
+    pub(crate) along_kerb: bool,
+    /// The two are told to have driven side by side.
+    pub(crate) abreast: bool,
     /// A double yellow line divides it.
     pub(crate) centre_line: bool,
     /// A lane for left turns lies beside the ego's, which is told to be the left one of those that go on.

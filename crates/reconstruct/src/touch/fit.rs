@@ -70,9 +70,13 @@ impl Told {
         beside && self.leaves_its_lane() && drives(&self.sv) && drives(&self.cp) && other
     }
 
-    /// Whether the partner is told to pass, and to touch with its flank or its rear.
+    /// Whether the partner is told to pass; or to have begun to, or come by, and to touch with its flank or its rear.
     pub(super) fn rubs_by(&self) -> bool {
-        self.cp.acts.iter().any(Doing::is_pass)
+        let flank = |zone: &ContactZone| zone.is_rear() || matches!(zone, ContactZone::Left | ContactZone::Right);
+        let told = !self.cp.zones.is_empty() && self.cp.zones.iter().all(flank) && !self.goes_out();
+        let passes = |doing: &Doing| doing.is_pass() || told && doing.is_begun_pass();
+        let comes_by = self.cp.movement == Some(Movement::Passing) && self.sv.state.stands();
+        self.cp.acts.iter().any(passes) || told && comes_by && self.origin != Origin::Opposite
     }
 
     /// Whether the partner comes behind an ego that turns, by the same way.

@@ -34,5 +34,6 @@ mod sweeps;
 mod task;
 mod things;
 mod third_users;
+mod walks;
 mod ways;
 mod who_was_first;
