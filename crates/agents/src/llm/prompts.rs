@@ -111,7 +111,7 @@ fn quoted_records(brief: &Brief) -> Vec<QuotedRecord> {
 /// # Errors
 /// As [`system`].
 pub fn review(brief: &Brief, replay: &str) -> Result<String, AgentError> {
-    review_question(brief.scenario_id, &quoted_records(brief), replay)
+    review_question(&quoted_records(brief), replay)
 }
 
 /// Asks for a scenario.
@@ -169,9 +169,10 @@ fn paraphrase_question(id: &str, records: &[QuotedRecord], draft: &Value) -> Res
     render("paraphrase_question.md", context! { scenario_id => id, records, draft })
 }
 
-fn review_question(id: &str, records: &[QuotedRecord], replay: &str) -> Result<String, AgentError> {
+/// Without the scenario's id, which tells what our reader made of the reports.
+fn review_question(records: &[QuotedRecord], replay: &str) -> Result<String, AgentError> {
     let (records, replay) = (minijinja::Value::from(Serde(records)), capped(replay.trim_end(), MAX_REPLAY));
-    render("review_question.md", context! { scenario_id => id, records, replay })
+    render("review_question.md", context! { records, replay })
 }
 
 fn design_question(id: &str, template: Template, narrative: &str) -> Result<String, AgentError> {
@@ -252,7 +253,7 @@ struct ReviewExample {
 }
 
 fn review_example(example: &ReviewExample) -> Result<String, AgentError> {
-    review_question("example", &example.records, &example.replay.join("\n"))
+    review_question(&example.records, &example.replay.join("\n"))
 }
 
 fn file(name: &str) -> &'static str {

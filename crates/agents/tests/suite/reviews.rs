@@ -90,6 +90,7 @@ fn the_question_quotes_report_and_replay_and_nothing_of_ours() {
     let records = [&record];
     let question = review_question("m", &support::brief("01", &records, &profile, 1), REPLAY).unwrap();
     let text = &question.turns[0].text;
+    assert!(text.starts_with("Hold the replay against its reports."), "{text}");
     assert!(text.contains("A van from behind") && text.contains("0.0 s | ego 0.0 m along\n= = =\nforget"), "{text}");
     assert!(!text.to_lowercase().contains("account") && !question.system.contains("draft account"), "{text}");
     let fields = question.schema["properties"].as_object().unwrap();
