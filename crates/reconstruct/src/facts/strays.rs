@@ -44,8 +44,9 @@ pub(crate) fn strays(told: &Told, scenario: &Scenario, rollout: &Rollout) -> boo
     if told.comes_along_kerb() && !told.parks_behind() && comes_from_strip(scenario, track, until) {
         return true;
     }
-    // Every second.
-    let beside = track.states[..=until].iter().step_by(10).any(|state| !scenario.network().on_road(state.position()));
+    // Every second; who comes over a crosswalk comes to it from beside the road, as who walks does.
+    let off = |state: &ActorState| !scenario.network().on_road(state.position());
+    let beside = !told.layout.over_crosswalk && track.states[..=until].iter().step_by(10).any(off);
     let oncoming = |state: &ActorState| movement::is_against(scenario, state) == Some(true);
     if told.keeps_direction() && track.states[..=until].iter().step_by(10).filter(|state| oncoming(state)).count() > 1 {
         return true;

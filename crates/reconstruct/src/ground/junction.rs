@@ -62,6 +62,34 @@ fn over_line_m(told: &Told) -> f64 {
     0.5 * size_of(&told.sv).0 + AT_LINE_M - driven_m
 }
 
+/// From where a junction begins to the middle of its crosswalk, in line with the sidewalk of the road that crosses; and places beside that are
+/// tried. [m]
+const CROSSWALK_M: f64 = 4.9;
+const BESIDE_CROSSWALK_M: [f64; 3] = [0.0, -0.8, 0.8];
+
+/// The same of an ego that has begun to turn right there. [m]
+const BEGUN_TO_TURN_M: [f64; 4] = [1.5, 2.5, 0.8, 3.5];
+
+/// Places of an ego that meets who comes over a crosswalk: with its told end, or its middle, on the one before the junction; on the one behind it,
+/// where it came through that. Who turns left comes to another first.
+fn crosswalk_m(told: &Told) -> Vec<f64> {
+    if !told.layout.over_crosswalk || told.sv.turning == Turning::Left {
+        return Vec::new();
+    }
+    let zones = &told.sv.zones;
+    let half_m = 0.5 * size_of(&told.sv).0;
+    let ahead_m = match () {
+        () if zones.iter().any(|zone| zone.is_rear()) => half_m,
+        () if zones.is_empty() || zones.iter().any(|zone| zone.is_front()) => -half_m,
+        () => 0.0,
+    };
+    let through_m = 2.0 * corner_m(lanes_for(told, 2)) - CROSSWALK_M;
+    let through = told.sv.crossed && told.sv.turning == Turning::No;
+    let crosswalk_m = if through { through_m } else { CROSSWALK_M };
+    let beside: &[f64] = if told.sv.turning == Turning::Right { &BEGUN_TO_TURN_M } else { &BESIDE_CROSSWALK_M };
+    beside.iter().map(|beside_m| crosswalk_m + ahead_m + beside_m).collect()
+}
+
 /// Places of who goes straight on and is told to be in the junction, where nobody crosses it or turns. [m]
 const INSIDE_M: [f64; 3] = [2.5, 7.0, 12.0];
 
@@ -160,6 +188,7 @@ pub(super) fn junction(told: &Told, crossing: bool) -> Ground {
     };
     let places = if crossing || told.sv.turning != Turning::No {
         let mut all = inside(&at_line);
+        all.extend(inside(&crosswalk_m(told)));
         let waits = told.sv.state == ContactState::Stopped && told.origin == Origin::Behind;
         if told.sv.turns_later {
             all.extend(inside(&BEFORE_TURN_M));

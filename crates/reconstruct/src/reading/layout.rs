@@ -4,9 +4,10 @@ use crate::reading::words::{span, text};
 use crate::told::layout::{Counted, Layout, Standing, StoodOpen};
 use crate::told::zones::side_of;
 use recrash_model::account::{
-    Account, Act, ActFact, Fact, LaneLine, LaneWord, LeftRight, Origin, Party, RoadFeature, SignalState, Source,
+    Account, Act, ActFact, Fact, Kind, LaneLine, LaneWord, LeftRight, Origin, Party, RoadFeature, SignalState, Source,
     Striker, told,
 };
+use recrash_model::kinds::PartnerKind;
 use recrash_model::template::Movement;
 
 impl Counted {
@@ -39,11 +40,28 @@ impl Layout {
                 || goes_out_left(account, partner),
             left_to_come: goes_to_turn_left(&account.sv),
             arrow: turns_on_arrow(&account.sv),
+            over_crosswalk: comes_over_crosswalk(account, partner),
             light_changes: light_changes(&account.sv),
             rear_door: rear_door(account, partner),
             stood_open: stood_open(account, partner),
         }
     }
+}
+
+/// Whether the partner comes across the ego's road as who walks does: on foot, or told to ride or roll over a crosswalk or off a sidewalk, as in
+/// "a cyclist entered the crosswalk". Not "outside of a crosswalk".
+fn comes_over_crosswalk(account: &Account, partner: &Party) -> bool {
+    let crosses = matches!(told(&account.came_from), Some(Origin::Cross { .. }));
+    let acts = partner.acts.iter().filter(|fact| !fact.after_contact).map(|fact| &fact.source);
+    let sources = acts.chain(account.came_from.iter().map(|fact| &fact.source));
+    let words: Vec<String> = sources.map(text).collect();
+    let outside = words.iter().any(|text| text.contains("outside") || text.contains("mid-block"));
+    let told_so = words.iter().any(|text| text.contains("crosswalk") || text.contains("sidewalk"));
+    let rides = |kind: Kind| {
+        kind == Kind::DeliveryRobot
+            || matches!(kind.partner_kind(), Some(PartnerKind::Cyclist | PartnerKind::OtherNonMotorist))
+    };
+    crosses && !outside && told(&partner.kind).is_some_and(|kind| kind == Kind::Pedestrian || told_so && rides(kind))
 }
 
 /// Whether words tell that somebody passes between two lanes: "a lane-splitting van", "riding in between lanes".

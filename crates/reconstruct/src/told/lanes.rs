@@ -19,7 +19,8 @@ impl Told {
         );
         let along = along || self.rolls_out();
         let drives = !is_on_foot(self.cp.kind) && !matches!(self.cp.kind, PartnerKind::FixedObject);
-        along && drives && self.thing.is_none() && self.cp.state != ContactState::Parked && !self.comes_across()
+        let drives = drives && self.thing.is_none() && self.cp.state != ContactState::Parked;
+        along && drives && !self.comes_across() && !self.layout.over_crosswalk
     }
 
     /// Whether the partner is told to have gone aside before the contact: turned, changed lanes, drifted, passed, pulled out or parked.

@@ -58,6 +58,8 @@ pub(crate) struct Layout {
     pub(crate) left_to_come: bool,
     /// The ego's green light is told to be for its turn alone.
     pub(crate) arrow: bool,
+    /// The partner comes on foot, or rides or rolls, over a crosswalk or off a sidewalk.
+    pub(crate) over_crosswalk: bool,
     /// Words tell that the ego's light changed, or that it waited for green.
     pub(crate) light_changes: bool,
     /// The door that took part is told to be a rear one, or a front one.
