@@ -44,7 +44,7 @@ impl Parser<'_> {
             }
             "for" if self.waits_for(self.standing_before(frame), mention.actor) => {
                 let frame = self.standing_before(frame);
-                if !self.comes_across(mention.actor, placed.end) {
+                if !self.comes_across(mention.actor, placed.end) && !self.at_yield_line(frame, placed.first) {
                     self.note(mention.actor, Relation::Ahead);
                 }
                 self.frames[frame].object.get_or_insert(mention.actor);
@@ -273,6 +273,12 @@ impl Parser<'_> {
             found.is_some() || matches!(self.tokens[at].text.as_str(), "toward" | "towards")
         });
         opposite || other_way || behind
+    }
+
+    /// "had waited at the yield line for a van": that comes across its way.
+    fn at_yield_line(&self, frame: usize, end: usize) -> bool {
+        let words = &self.tokens[self.frames[frame].first.min(end)..end];
+        words.windows(2).any(|pair| pair[0].text == "yield" && matches!(pair[1].text.as_str(), "line" | "sign"))
     }
 
     /// "a motorcycle came at it".

@@ -193,7 +193,7 @@ impl<'a> Seen<'a> {
                 Role::Abreast => self.drives_beside(extra, track),
                 Role::Kerb => self.is_parked(track) && self.is_on_side(extra, track),
                 Role::Obstacle => self.is_passed(extra, track),
-                Role::Passed => self.partner_passes(track),
+                Role::Passed => self.partner_passes(extra, track),
                 Role::Merger => self.merges(extra, track),
                 Role::Blocker => self.blocks(track, true),
                 Role::Beyond => self.blocks(track, false),
@@ -392,18 +392,20 @@ impl<'a> Seen<'a> {
         backs && side && comes && (0.0..AHEAD_M + self.stopping_m(self.until) + PARKED_M).contains(&ahead_m)
     }
 
-    /// Whether the partner goes round somebody who stands in the line on which it came.
-    fn partner_passes(&self, track: &ActorTrack) -> bool {
+    /// Whether the partner goes round somebody who stands in the line on which it came, or is slower there.
+    fn partner_passes(&self, extra: &Extra, track: &ActorTrack) -> bool {
         let Some(partner) = self.rollout.actors.iter().find(|track| track.id == "cp") else { return false };
         let came = partner.states[0].pose();
         let along = Vec2::from_heading(came.heading);
         let aside = |of: Vec2| along.cross(of - came.position);
         let met = partner.states[self.until.min(partner.states.len() - 1)].position();
-        let at = track.states[0].position();
+        let at = track.states[if extra.slow { self.until.min(track.states.len() - 1) } else { 0 }].position();
         let beside = (0..=self.until).any(|step| (aside(partner.states[step].position()) - aside(at)).abs() > 0.8);
         let in_line = aside(at).abs() < 0.5 * LANE_M && beside;
         let by = aside(at).abs() < 1.2 * LANE_M && along.dot(met - at) > 0.0;
-        self.stays(track) && (in_line || by) && (at - met).length() < PARKED_M
+        let slower = Self::mps(track, self.until) + SLOWED_MPS < Self::mps(partner, self.until);
+        let pace = if extra.slow { !self.stays(track) && slower } else { self.stays(track) };
+        pace && (in_line || by) && (at - met).length() < PARKED_M
     }
 
     /// Whether somebody was beside the ego's lane, on the told side, and is in it ahead of the ego at the contact.

@@ -97,6 +97,8 @@ pub(super) fn wanted(told: &Told, account: &Account) -> Vec<Extra> {
             let after_turn = story.is_after_turn(told, other);
             let near = near.map(|near| Near { after_turn, ..near });
             let near = near.map(|near| if told.dropped == Some(number) { near.ahead() } else { near });
+            let near =
+                near.map(|near| if story.goes_first(told, other) { near.from(Story::first_from(told)) } else { near });
             near.map(|near| Extra { awaited, several, ..Extra::near(near, number, kind) })
         };
         // Traffic that an ego passes which is not told to have slowed or stood is there.
@@ -142,6 +144,7 @@ pub(super) fn wanted(told: &Told, account: &Account) -> Vec<Extra> {
                 let between = role == Role::Beside && story.is_between(told, other);
                 let parks = role == Role::Lead && is_parking(other);
                 let passed = role == Role::Kerb && story.goes_by(told, other);
+                let goes_out = role == Role::Passed && story.is_reason_to_go_out(told, other);
                 list.push(Extra {
                     of: vec![number],
                     kind,
@@ -149,9 +152,11 @@ pub(super) fn wanted(told: &Told, account: &Account) -> Vec<Extra> {
                     parks,
                     parked,
                     first,
+                    goes_out,
+                    slow: goes_out && before_contact(other).next().is_none(),
                     again,
                     late,
-                    early: role == Role::Crosser && story.is_gone_before(other),
+                    early: role == Role::Crosser && (story.is_gone_before(other) || story.goes_first(told, other)),
                     awaited,
                     behind,
                     between,

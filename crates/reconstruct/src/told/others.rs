@@ -87,6 +87,7 @@ impl Extra {
             Role::Thing => "a thing is in its lane ahead",
             Role::Kerb => "parked at the kerb",
             Role::Obstacle => "one stands that it goes round",
+            Role::Passed if self.slow => "one is slow that the partner goes round",
             Role::Passed => "one stands that the partner goes round",
             Role::Merger => "one changes into its lane ahead",
             Role::Blocker => "one stands across the junction",
@@ -108,6 +109,9 @@ pub(crate) struct Extra {
     pub(crate) parks: bool,
     /// Is told to be parked.
     pub(crate) parked: bool,
+    /// The partner, beside the ego, leaves its lane for it; and it drives slowly there, and does not stand.
+    pub(crate) goes_out: bool,
+    pub(crate) slow: bool,
     /// It does so before the ego moves between two stops.
     pub(crate) first: bool,
     /// It is told to stand again where the ego, which had set off, slows or stops: it moves up before that.
@@ -148,6 +152,8 @@ impl Extra {
             goes: false,
             parks: false,
             parked: false,
+            goes_out: false,
+            slow: false,
             first: false,
             again: false,
             late: false,

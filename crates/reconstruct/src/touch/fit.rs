@@ -104,7 +104,8 @@ impl Told {
 
     /// Whether a partner that has a signal or a sign on the crossing road, and goes straight on, is beside the lanes that lead there.
     pub(super) fn crosses_off_lanes(&self, ground: &Ground, cp: Pose) -> bool {
-        let own_way = !matches!(self.cp.movement, Some(Movement::WrongWay | Movement::Backing));
+        let own_way =
+            !self.crosses_at_walk() && !matches!(self.cp.movement, Some(Movement::WrongWay | Movement::Backing));
         let straight = self.cp.turning == Turning::No && self.cp.state != ContactState::Reversing && own_way;
         let lanes_m = ground.lanes as f64 * LANE_M;
         let told = straight && self.cp.control.is_some() && ground.junction;
