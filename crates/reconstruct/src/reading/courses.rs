@@ -247,8 +247,8 @@ impl Told {
         let reacts = steps(sv, answers).into_iter().min();
         let turning = matches!(self.cp.turning, Turning::Left | Turning::Right);
         self.sv.reacts = turning && !self.cp.stood_first && turns.is_some() && turns < reacts;
-        // Who swerves from somebody that comes at it does so away from it.
-        let swerves = !steps(sv, |act| act == Act::Swerve).is_empty();
+        // Who swerves from somebody that comes at it, or steers aside, does so away from it.
+        let swerves = !steps(sv, |act| matches!(act, Act::Swerve | Act::Drift)).is_empty();
         let straight =
             matches!(self.sv.movement, Some(Movement::Straight | Movement::LaneDeparture | Movement::Passing));
         if swerves && straight && self.sv.aside.is_none() && self.striker == Some(Striker::Cp) {
