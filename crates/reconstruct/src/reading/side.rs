@@ -174,8 +174,8 @@ const MUCH_FASTER_MPS: f64 = 4.0;
 /// A column's speed where words tell a much lower one at the contact: with that it came, and slowed then. [m/s]
 fn faster_than(party: &Party, impact_mps: Option<f64>) -> Option<f64> {
     let at_contact = party.speeds.iter().filter(|fact| fact.value.meaning == SpeedMeaning::Impact);
-    let column = at_contact.filter(|fact| matches!(fact.source, Source::Column { .. })).map(|fact| fact.value.mps);
-    column.last().filter(|mps| impact_mps.is_some_and(|impact| *mps > impact + MUCH_FASTER_MPS))
+    let mut column = at_contact.filter(|fact| matches!(fact.source, Source::Column { .. })).map(|fact| fact.value.mps);
+    column.next_back().filter(|mps| impact_mps.is_some_and(|impact| *mps > impact + MUCH_FASTER_MPS))
 }
 
 /// Whether a stop is told on its way, and not as done: "was coming to a stop", "was stopping".
