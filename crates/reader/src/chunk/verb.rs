@@ -633,6 +633,10 @@ impl Chunker<'_> {
         if word.ends_with("ly") && at >= 2 && self.text(at - 2) == "to" {
             return true;
         }
+        // "could only brake".
+        if word == "only" && at >= 2 && self.text(at - 2) == "could" {
+            return true;
+        }
         match word {
             "to" | "not" | "had" | "has" | "have" | "will" | "would" | "could" | "can" | "may" | "might" | "should"
             | "must" | "did" | "t" | "fully" | "suddenly" | "immediately" | "abruptly" | "slowly" | "also" | "then"

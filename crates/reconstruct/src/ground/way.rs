@@ -21,6 +21,9 @@ const AFTER_TURN_M: [f64; 4] = [0.0, 3.0, 6.0, 10.0];
 const ALONG_WALK_M: [f64; 3] = [0.0, -0.8, 0.8];
 const TURNED_SINE: f64 = 0.5;
 
+/// Who stands at the right edge of its lane stands so far to the right of its middle. [m]
+const LANE_EDGE_M: f64 = 0.6;
+
 /// A road and the ego's way on it. Hundreds of ways of touching are tried on one: they share what is large.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Ground {
@@ -147,7 +150,7 @@ impl Ground {
         Self { stands_m: self.kerbs_m[1], ..self }
     }
 
-    /// The same, with an ego that stands over a line of the road, where it is told to.
+    /// The same, with an ego that stands over a line of the road, or at the edge of its lane, where it is told to.
     pub(super) fn over_line(self, told: &Told) -> Self {
         let beside_m = 0.5 * LANE_M - INSIDE_M;
         let [left, right] = [self.lane > 0, usize::from(self.lane) + 1 < self.lanes];
@@ -158,6 +161,8 @@ impl Ground {
             Some((LaneLine::Centre, _)) if !left => -beside_m,
             Some((LaneLine::Lanes, Some(LeftRight::Left) | None)) if left => -beside_m,
             Some((LaneLine::Lanes, Some(LeftRight::Right) | None)) if right => beside_m,
+            // Where others are parked or drive on its right it is in its lane.
+            _ if told.sv.state.stands() && told.layout.sv.lane_edge && self.stands_m == 0.0 => LANE_EDGE_M,
             _ => return self,
         };
         Self { stands_m, ..self }

@@ -5,7 +5,7 @@ use crate::told::layout::{Counted, Layout, Standing, StoodOpen};
 use crate::told::zones::side_of;
 use recrash_model::account::{
     Account, Act, ActFact, Fact, LaneLine, LaneWord, LeftRight, Origin, Party, RoadFeature, SignalState, Source,
-    Striker, told,
+    StandReason, Striker, told,
 };
 use recrash_model::template::Movement;
 
@@ -45,6 +45,7 @@ impl Layout {
             left_to_come: goes_to_turn_left(&account.sv),
             arrow: turns_on_arrow(&account.sv),
             light_changes: light_changes(&account.sv),
+            on_red: turns_on_red(&account.sv),
             rear_door: rear_door(account, partner),
             stood_open: stood_open(account, partner),
         }
@@ -139,7 +140,11 @@ fn standing(account: &Account, party: &Party) -> Standing {
     // Who is partly in a lane and partly beside it is in none.
     let partly = told(&party.astride).is_some_and(|over| over.line == LaneLine::Edge);
     let in_lane = double || !partly && party.acts.iter().rfind(stands).is_some_and(is_in_lane);
-    Standing { counted: lane, at_kerb: stands_at_kerb(account, party), in_lane }
+    let last = party.acts.iter().rfind(stands).map_or(String::new(), |fact| text(&fact.source));
+    // Where it lets somebody in or out there, it is at the kerb.
+    let edge = last.ends_with(" edge") || last.ends_with("lane") && last.contains("edge of");
+    let boards = party.reasons.iter().any(|fact| fact.value == StandReason::PickupDropoff) && !in_lane;
+    Standing { counted: lane, at_kerb: edge && boards || stands_at_kerb(account, party), in_lane, lane_edge: edge }
 }
 
 /// "parked in the travel lane": the reader's words of who stands in a lane end with it.
@@ -203,6 +208,12 @@ fn light_changes(party: &Party) -> bool {
     });
     let light = |text: &str| text.contains("light") || text.contains("signal");
     turned || texts.any(|text| text.contains("green") || light(&text) && text.contains("chang"))
+}
+
+/// Whether words tell that somebody turned at red: "a right turn on red".
+fn turns_on_red(party: &Party) -> bool {
+    let acts = party.acts.iter().filter(|fact| !fact.after_contact).map(|fact| &fact.source);
+    acts.chain(party.controls.iter().map(|fact| &fact.source)).any(|source| text(source).contains("on red"))
 }
 
 /// So many words before "door" tell which one it is.

@@ -36,6 +36,8 @@ pub(crate) struct Standing {
     pub(crate) at_kerb: bool,
     /// It is parked in a lane: "double parked", "parked in-lane".
     pub(crate) in_lane: bool,
+    /// It stands at the edge of the road or of its lane.
+    pub(crate) lane_edge: bool,
 }
 
 /// What is told so.
@@ -67,6 +69,8 @@ pub(crate) struct Layout {
     pub(crate) arrow: bool,
     /// Words tell that the ego's light changed, or that it waited for green.
     pub(crate) light_changes: bool,
+    /// The ego is told to have turned at red: "a right turn on red".
+    pub(crate) on_red: bool,
     /// The door that took part is told to be a rear one, or a front one.
     pub(crate) rear_door: Option<bool>,
     /// That door is told to have stood open when the other came.

@@ -12,6 +12,7 @@ mod courses;
 mod doors;
 mod drives;
 mod earlier;
+mod ego_way;
 mod going_first;
 mod in_step;
 mod kerb;

@@ -14,6 +14,7 @@ use super::places::{
 use super::{Clues, changed_from, first_relation, lane_side, relation_to};
 use crate::chunk::Joint;
 use crate::fold::Reading;
+use crate::fold::controls::turns_on_red;
 use crate::fold::party::has_zone;
 use crate::fold::types::{turn_side, turning};
 use crate::frame::Frame;
@@ -52,7 +53,7 @@ struct Case<'a> {
 type Told = Option<Fact<Origin>>;
 type Rule = fn(&Case<'_>) -> Told;
 
-const RULES: [Rule; 41] = [
+const RULES: [Rule; 42] = [
     |case| case.thrown_at_the_rear(),
     |case| case.out_of_a_place(),
     |case| case.stood_in_a_stall(),
@@ -66,6 +67,7 @@ const RULES: [Rule; 41] = [
     |case| case.leaves_the_kerb(),
     |case| case.goes_over_from_the_kerb(),
     |case| case.backs_from_a_named_kerb(),
+    |case| case.comes_on_green(),
     |case| case.moves_over_from_behind(),
     |case| case.behind_in_the_lane_it_goes_to(),
     |case| case.comes_from_behind(),
@@ -95,6 +97,9 @@ const RULES: [Rule; 41] = [
     |case| case.is_passed(),
     |case| case.is_rear_ended(),
 ];
+
+/// So many words after a verb tell that it was green, at most: "coming straight through from the left on green". [tokens]
+const ON_GREEN_WITHIN: usize = 9;
 
 /// From where a road user comes.
 pub(super) fn of_road_user(clues: &Clues<'_>, account: &Account) -> Told {
@@ -660,6 +665,18 @@ impl<'a> Case<'a> {
     fn passes(&self) -> Told {
         let passes = self.did(Act::Pass) && passes_subject(self.reading, self.actor);
         passes.then(|| Fact::by_rule(Origin::Behind, "who passes comes from behind"))
+    }
+
+    /// "It turned right on red, and a car that came through on the green struck it": along the crossing road, from its left.
+    fn comes_on_green(&self) -> Told {
+        let tokens = &self.reading.story.tokens;
+        let green = |frame: &Frame| {
+            let words = &tokens[frame.first..self.reading.story.sentences[frame.sentence].end];
+            words.iter().take(ON_GREEN_WITHIN).any(|token| token.text == "green")
+        };
+        let comes = self.frames().any(|(_, frame)| frame.act().is_some() && frame.happened() && green(frame));
+        let told = comes && turn_side(self.partner).is_none() && turns_on_red(self.reading);
+        told.then(|| Fact::by_rule(Origin::Cross { side: LeftRight::Left }, "at green, where it turned at red"))
     }
 
     fn by_lanes(&self) -> Told {
