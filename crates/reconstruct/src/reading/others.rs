@@ -97,8 +97,13 @@ pub(super) fn wanted(told: &Told, account: &Account) -> Vec<Extra> {
             let after_turn = story.is_after_turn(told, other);
             let near = near.map(|near| Near { after_turn, ..near });
             let near = near.map(|near| if told.dropped == Some(number) { near.ahead() } else { near });
-            let near =
-                near.map(|near| if story.goes_first(told, other) { near.from(Story::first_from(told)) } else { near });
+            let near = near.map(|near| {
+                if story.goes_first(told, other) {
+                    near.gone_first(Story::first_from(told) == Role::Oncoming)
+                } else {
+                    near
+                }
+            });
             near.map(|near| Extra { awaited, several, ..Extra::near(near, number, kind) })
         };
         // Traffic that an ego passes which is not told to have slowed or stood is there.

@@ -1,6 +1,5 @@
 //! What is told of somebody who has no part in what the ego does.
 
-use crate::told::others::Role;
 use recrash_model::account::{LeftRight, Origin};
 
 /// What somebody near is told to do.
@@ -76,10 +75,10 @@ impl Near {
     }
 
     /// The same of one that goes by before an ego that stood sets off, as others with that part do: towards it, or along the crossing road.
-    pub(crate) const fn from(self, role: Role) -> Self {
-        let (from, first) = match role {
-            Role::Oncoming => (Origin::Opposite, First::Gone),
-            _ => (Origin::Cross { side: LeftRight::Left }, self.first),
+    pub(crate) const fn gone_first(self, oncoming: bool) -> Self {
+        let (from, first) = match oncoming {
+            true => (Origin::Opposite, First::Gone),
+            false => (Origin::Cross { side: LeftRight::Left }, self.first),
         };
         Self { place: Some(from), does: Does::Drives, first, ..self }
     }
