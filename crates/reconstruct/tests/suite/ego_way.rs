@@ -4,6 +4,7 @@ use crate::ways::{before_contact, checks_without, made, story};
 use recrash_model::account::{Account, Act, Fact, Source, Speed, SpeedMeaning};
 use recrash_model::metrics::{CheckKind, CheckResult};
 use recrash_model::scenario::{Aspect, Device};
+use recrash_model::template::Movement;
 use recrash_reconstruct::Reconstruction;
 
 const WITHIN: &str = "The AV was traveling west in the center lane on Elm Street. A sedan in the right lane began to change lanes to the left. The AV slowed \
@@ -65,7 +66,9 @@ fn who_slowed_came_as_fast_as_its_column_says() {
 
 #[test]
 fn who_steers_aside_before_it_is_struck_does_so_away_from_the_other() {
-    assert!(aside_m(&made(&story(STEERED))) < -0.5);
+    let mut account = story(STEERED);
+    account.sv.movement = Some(Fact::of_column(Movement::Straight, "SV Pre-Crash Movement"));
+    assert!(aside_m(&made(&account)) < -0.5);
 }
 
 #[test]
