@@ -291,10 +291,11 @@ impl Candidate<'_> {
     /// "at a railroad crossing", "a pedestrian crossing sign". "For a deer crossing the road" is one.
     fn is_a_crossing(&self) -> bool {
         let named = matches!(self.word_before, "railroad" | "railway" | "pedestrian" | "school" | "deer" | "cattle");
-        // "at an unprotected crossing".
-        let plain =
-            matches!(self.word_before, "unprotected" | "unmarked" | "marked" | "level" | "grade" | "controlled")
-                && self.is_single();
+        // "at an unprotected crossing", "for the same crossing".
+        let plain = matches!(
+            self.word_before,
+            "unprotected" | "unmarked" | "marked" | "same" | "level" | "grade" | "controlled"
+        ) && self.is_single();
         if self.word(0) == "crossing" && plain {
             return true;
         }

@@ -31,7 +31,8 @@ impl Parser<'_> {
             "off" if !self.frames[frame].is_contact() => {}
             // "came out from behind a van", "from between two vans".
             "behind" | "between"
-                if matches!(self.frames[frame].act(), Some(Act::Enter | Act::Cross | Act::PullOut)) =>
+                if matches!(self.frames[frame].act(), Some(Act::Enter | Act::Cross | Act::PullOut))
+                    || self.comes_from_behind(frame, mention) =>
             {
                 self.frames[frame].object.get_or_insert(mention.actor);
             }
@@ -44,7 +45,7 @@ impl Parser<'_> {
             }
             "for" if self.waits_for(self.standing_before(frame), mention.actor) => {
                 let frame = self.standing_before(frame);
-                if !self.comes_across(mention.actor, placed.end) {
+                if !self.comes_across(mention.actor, placed.end) && !self.waits_at_line(frame, placed) {
                     self.note(mention.actor, Relation::Ahead);
                 }
                 self.frames[frame].object.get_or_insert(mention.actor);
@@ -70,6 +71,15 @@ impl Parser<'_> {
             }
             _ => {}
         }
+    }
+
+    /// "came from behind the truck", of another than the subject vehicle: nobody sees it before.
+    fn comes_from_behind(&self, frame: usize, mention: &Mention) -> bool {
+        let taken = &self.frames[frame];
+        let from = self.tokens.get(taken.end.saturating_sub(1)..taken.end + 2).unwrap_or_default();
+        let from = from.windows(2).any(|pair| pair[0].text == "from" && pair[1].text == "behind");
+        let others = mention.actor != SUBJECT && taken.who != Some(SUBJECT) && taken.who != Some(mention.actor);
+        taken.act() == Some(Act::Follow) && from && others
     }
 
     /// "proceeded slowly past two workers", "steered around the truck".
@@ -273,6 +283,15 @@ impl Parser<'_> {
             found.is_some() || matches!(self.tokens[at].text.as_str(), "toward" | "towards")
         });
         opposite || other_way || behind
+    }
+
+    /// "waited at the yield line for a bus": that goes by ahead of it, and is not in its lane.
+    fn waits_at_line(&self, frame: usize, placed: &Placed) -> bool {
+        let words = self.tokens[self.frames[frame].first..placed.first].windows(2);
+        words.into_iter().any(|pair| {
+            let (one, other) = (pair[0].text.as_str(), pair[1].text.as_str());
+            matches!((one, other), ("yield" | "stop" | "limit", "line") | ("yield", "sign"))
+        })
     }
 
     /// "a motorcycle came at it".

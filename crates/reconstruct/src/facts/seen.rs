@@ -10,7 +10,7 @@ use crate::told::queue::{leaves_lane, waits_ahead};
 use crate::told::side::Turning;
 use crate::usual::{LANE_M, STANDS_MPS};
 use recrash_model::account::{ContactState, Kind, LeftRight, Origin, StandReason};
-use recrash_model::geometry::Vec2;
+use recrash_model::geometry::{OrientedBox, Pose, Vec2};
 use recrash_model::kinds::PartnerKind;
 use recrash_model::math;
 use recrash_model::rollout::{ActorTrack, EventKind, Rollout};
@@ -49,6 +49,9 @@ const BESIDE_LANES: f64 = 2.4;
 
 /// Whom the ego stands for while it comes comes so much nearer then; and who passes between two is no farther before them. [m]
 const COMES_M: f64 = 2.0;
+
+/// A line of sight is so wide. [m]
+const SIGHT_M: f64 = 0.1;
 
 /// A rollout, and when the two touch.
 pub(crate) struct Seen<'a> {
@@ -193,7 +196,9 @@ impl<'a> Seen<'a> {
                 Role::Abreast => self.drives_beside(extra, track),
                 Role::Kerb => self.is_parked(track) && self.is_on_side(extra, track),
                 Role::Obstacle => self.is_passed(extra, track),
+                Role::Passed if extra.in_line => self.partner_leaves(extra, track),
                 Role::Passed => self.partner_passes(track),
+                Role::Screen => self.hides(track),
                 Role::Merger => self.merges(extra, track),
                 Role::Blocker => self.blocks(track, true),
                 Role::Beyond => self.blocks(track, false),
@@ -404,6 +409,35 @@ impl<'a> Seen<'a> {
         let in_line = aside(at).abs() < 0.5 * LANE_M && beside;
         let by = aside(at).abs() < 1.2 * LANE_M && along.dot(met - at) > 0.0;
         self.stays(track) && (in_line || by) && (at - met).length() < PARKED_M
+    }
+
+    /// Whether somebody stands all the time, and between the ego and the partner before they touch.
+    fn hides(&self, track: &ActorTrack) -> bool {
+        let Some(partner) = self.rollout.actors.iter().find(|track| track.id == "cp") else { return false };
+        let outline = OrientedBox::new(track.states[0].pose(), track.length_m, track.width_m);
+        let hidden = |step: usize| {
+            let at = self.ego.states[step].position();
+            let way = partner.states[step.min(partner.states.len() - 1)].position() - at;
+            let middle = Pose { position: at + way * 0.5, heading: math::atan2(way.y, way.x) };
+            outline.overlaps(&OrientedBox::new(middle, way.length(), SIGHT_M))
+        };
+        self.stays(track) && (0..self.until).any(hidden)
+    }
+
+    /// Whether somebody is ahead of the partner in the line on which that came, until it has left that or touches the ego; it stands, or is slower.
+    fn partner_leaves(&self, extra: &Extra, track: &ActorTrack) -> bool {
+        let Some(partner) = self.rollout.actors.iter().find(|track| track.id == "cp") else { return false };
+        let came = partner.states[0].pose();
+        let along = Vec2::from_heading(came.heading);
+        let at = |of: &ActorTrack, step: usize| of.states[step.min(of.states.len() - 1)].position() - came.position;
+        let in_line = along.cross(at(track, 0)).abs() < 0.5 * LANE_M;
+        let aside = |step: &usize| along.cross(at(partner, *step)).abs() > 0.5 * LANE_M;
+        let left = (0..=self.until).find(aside).unwrap_or(self.until);
+        let ahead = along.dot(at(track, left) - at(partner, left)) > 0.0;
+        let near = (at(track, self.until) - at(partner, self.until)).length() < PARKED_M;
+        let slower = (0..=self.until).all(|step| Self::mps(track, step) < Self::mps(partner, 0) - SLOWED_MPS);
+        let drives = if extra.slower { slower } else { self.stays(track) };
+        in_line && ahead && near && drives
     }
 
     /// Whether somebody was beside the ego's lane, on the told side, and is in it ahead of the ego at the contact.

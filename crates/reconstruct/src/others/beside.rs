@@ -22,11 +22,14 @@ const PASSED_BESIDE_M: f64 = 3.0;
 const ABREAST_M: f64 = 3.0;
 const BEYOND_M: f64 = 160.0;
 
+/// Who is slower than the partner that leaves its lane for it has this share of its speed. [-]
+const SLOWER: f64 = 0.6;
+
 /// An ego that is faster than this all the time does not stand. [m/s]
 const STEADY_MPS: f64 = 2.0;
 
 /// Who hides somebody who comes across stands so far short of it; the sine of the least angle across. [m, -]
-const HIDES_M: f64 = 0.8;
+pub(crate) const HIDES_M: f64 = 0.8;
 const ACROSS: f64 = 0.7;
 
 impl Scene<'_> {
@@ -38,8 +41,12 @@ impl Scene<'_> {
         let is = |strips: &[Strip], kind: StripKind| strips.iter().any(|strip| strip.kind == kind);
         let stalls = is(right, StripKind::Stalls);
         let has = |strips: &[Strip]| is(strips, StripKind::Parking) || is(strips, StripKind::Stalls);
-        // Whom it passes is abreast of its front.
-        let far_m = if extra.passed { 0.0 } else { PARKED_AHEAD_M + 0.5 * length_m };
+        // Whom it passes is abreast of its front; between whom and the ego the partner passes is abreast of that.
+        let far_m = match (extra.passed, self.told.layout.by_kerb) {
+            (true, _) => 0.0,
+            (false, true) => -self.front_m(),
+            (false, false) => PARKED_AHEAD_M + 0.5 * length_m,
+        };
         let ahead_m = self.at(self.until).0 + self.front_m() + far_m;
         // Nobody is parked in a junction.
         let before_m = if self.ground.junction { self.ground.first_m() - PARKED_AHEAD_M } else { f64::INFINITY };
@@ -85,6 +92,35 @@ impl Scene<'_> {
         (on_m > 0.0).then(|| ActorPlan::standing(Place::at(at.x, at.y, came.heading.to_degrees())))
     }
 
+    /// For whom the partner leaves its lane: ahead of it in that, so far that it comes by, or does not come up to it before it touches the ego; who
+    /// drives there does so slower.
+    pub(super) fn left_behind(&self, extra: &Extra, length_m: f64) -> Option<ActorPlan> {
+        let track = self.partner?;
+        let last = self.until.min(track.states.len() - 1);
+        let came = track.states[0].pose();
+        let along = Vec2::from_heading(came.heading);
+        let way = |step: usize| track.states[step].position() - came.position;
+        let left = (0..=last).find(|step| along.cross(way(*step)).abs() > BESIDE_M);
+        let room_m = if left.is_some() && !extra.slower { ROOM_M } else { ROUND_AHEAD_M };
+        let step = left.filter(|_| !extra.slower).unwrap_or(last);
+        let on_m = along.dot(way(step)) + 0.5 * (track.length_m + length_m) + room_m;
+        let place = |on_m: f64| {
+            let at = came.position + along * on_m;
+            Place::at(at.x, at.y, came.heading.to_degrees())
+        };
+        if !extra.slower {
+            return Some(ActorPlan::standing(place(on_m)));
+        }
+        let speed_mps = SLOWER * along.dot(way(last)) / (0.1 * last.max(1) as f64);
+        let from_m = on_m - speed_mps * self.told.contact_s;
+        let room_m = 0.5 * (track.length_m + length_m) + ROOM_M;
+        (speed_mps > STEADY_MPS && from_m > room_m).then(|| ActorPlan {
+            speed_mps,
+            course: vec![Leg::Curve { to: place(on_m + BEYOND_M), reverse: false }],
+            ..ActorPlan::standing(place(from_m))
+        })
+    }
+
     /// Where a partner that comes across passes a line beside the ego's way. [m]
     fn crossing_m(&self, t_m: f64) -> Option<f64> {
         let track = self.partner?;
@@ -127,10 +163,30 @@ impl Scene<'_> {
     }
 
     /// Who hides a partner that comes across stands short of where that comes out. [m]
-    fn hides_m(&self, t_m: f64, length_m: f64) -> Option<f64> {
+    pub(super) fn hides_m(&self, t_m: f64, length_m: f64) -> Option<f64> {
         let (partner_m, wide_m) = size_of(&self.told.cp);
         let half_m = 0.5 * partner_m.min(wide_m.max(1.0));
         Some(self.crossing_m(t_m)? - half_m - HIDES_M - 0.5 * length_m)
+    }
+
+    /// Who hides a partner that comes across stands in the next lane on its side, where no lane is there at the kerb, short of where it comes out,
+    /// and of a junction.
+    pub(super) fn screen(&self, extra: &Extra, length_m: f64) -> Option<ActorPlan> {
+        let side = self.told.comes_from_side()?;
+        let [left_m, right_m] = [self.ground.opposing_m - 0.5 * LANE_M, self.ground.lane_edges_m[1]];
+        let against = side == LeftRight::Left && (extra.opposite || left_m < LANE_M);
+        let t_m = match side {
+            LeftRight::Left if against => -self.ground.opposing_m,
+            LeftRight::Left => -LANE_M,
+            LeftRight::Right if right_m < LANE_M => self.ground.kerbs_m[1],
+            LeftRight::Right => LANE_M,
+        };
+        let before_m = self.ground.junction.then(|| self.ground.first_m() - 0.5 * length_m - ROOM_M);
+        let hides_m = self.hides_m(t_m, length_m);
+        let s_m = hides_m.into_iter().chain(before_m).reduce(f64::min)?;
+        let pose = self.ground.pose(s_m, t_m);
+        let turned_deg = if against { 180.0 } else { 0.0 };
+        Some(ActorPlan::standing(Place::at(pose.position.x, pose.position.y, pose.heading.to_degrees() + turned_deg)))
     }
 
     /// Who stands in the next lane where the ego is at the contact; ahead of a partner that is there too, and short of where one

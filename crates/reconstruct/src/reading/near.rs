@@ -142,6 +142,8 @@ impl Near {
         let queue = other.place.as_ref().is_some_and(|fact| text(&fact.source).contains("queue"));
         let does = match does {
             Does::Untold if queue => Does::Stands,
+            // "A truck in the opposing lane blocked its view of who came from behind that."
+            Does::Untold if other.hides && !matches!(place, Some(Origin::Ahead | Origin::Behind)) => Does::Stands,
             // "A gap in passing traffic".
             Does::Untold if said(&["passing"]) && Does::Passes.fits(place) => Does::Passes,
             does => does,

@@ -48,6 +48,8 @@ pub(crate) struct Layout {
     pub(crate) one_way: bool,
     /// The partner rides or drives between two lanes: "lane-splitting".
     pub(crate) splits: bool,
+    /// The partner passes between the ego and the kerb, or who is parked there.
+    pub(crate) by_kerb: bool,
     /// A double yellow line divides it.
     pub(crate) centre_line: bool,
     /// A lane for left turns lies beside the ego's, which is told to be the left one of those that go on.

@@ -15,6 +15,7 @@ mod earlier;
 mod in_step;
 mod kerb;
 mod lanes;
+mod left_behind;
 mod moves;
 mod near;
 mod near_deeds;
