@@ -40,7 +40,7 @@ fn is_of_subject(reading: &Reading<'_>, at: usize) -> bool {
         let (begins, ends) = reading.window(*number);
         !frame.aside && (begins..ends).contains(&at)
     });
-    of.map(|(_, frame)| frame).last().is_some_and(|frame| frame.who == Some(SUBJECT))
+    of.map(|(_, frame)| frame).next_back().is_some_and(|frame| frame.who == Some(SUBJECT))
 }
 
 /// "hidden by a parked van", "obscured behind the bus", "its view was blocked by a van"; not "its lane was blocked by a van".

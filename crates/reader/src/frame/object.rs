@@ -287,8 +287,8 @@ impl Parser<'_> {
 
     /// "waited at the yield line for a bus": that goes by ahead of it, and is not in its lane.
     fn waits_at_line(&self, frame: usize, placed: &Placed) -> bool {
-        let words = self.tokens[self.frames[frame].first..placed.first].windows(2);
-        words.into_iter().any(|pair| {
+        let words = self.tokens.get(self.frames[frame].first..placed.first).unwrap_or_default();
+        words.windows(2).any(|pair| {
             let (one, other) = (pair[0].text.as_str(), pair[1].text.as_str());
             matches!((one, other), ("yield" | "stop" | "limit", "line") | ("yield", "sign"))
         })

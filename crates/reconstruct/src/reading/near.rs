@@ -143,7 +143,7 @@ impl Near {
         let does = match does {
             Does::Untold if queue => Does::Stands,
             // "A truck in the opposing lane blocked its view of who came from behind that."
-            Does::Untold if other.hides && !matches!(place, Some(Origin::Ahead | Origin::Behind)) => Does::Stands,
+            Does::Untold if other.hides && place == Some(Origin::Opposite) => Does::Stands,
             // "A gap in passing traffic".
             Does::Untold if said(&["passing"]) && Does::Passes.fits(place) => Does::Passes,
             does => does,
