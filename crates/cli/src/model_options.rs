@@ -4,6 +4,9 @@ use clap::{Args, ValueEnum};
 use recrash_pipeline::{AnswerMode, Caps, Cast, ModelAccess, Reads};
 use std::path::PathBuf;
 
+/// Takes a model that is cast to review away again.
+const NOBODY: &str = "nobody";
+
 /// Who plays which role, and how models are asked. A model is named as its provider names it.
 #[derive(Debug, Clone, Default, Args)]
 #[command(next_help_heading = "Agents and language models")]
@@ -24,6 +27,10 @@ pub struct ModelArgs {
     /// Who tunes; rules is the search, which costs nothing and finds more. [default: rules]
     #[arg(long, value_name = "rules|MODEL")]
     pub tune: Option<String>,
+    /// Who reads each replay beside its report, and says what it shows otherwise: a language model, or nobody; in a suite that
+    /// goes by accounts. It changes no scenario. [default: nobody]
+    #[arg(long, value_name = "nobody|MODEL")]
+    pub review: Option<String>,
     /// Rounds of a model that tunes. [default: 3]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=50))]
     pub rounds: Option<u16>,
@@ -93,7 +100,7 @@ pub enum Llm {
 impl ModelArgs {
     /// Whether who plays a role was typed.
     pub fn names_a_model(&self) -> bool {
-        [&self.agent, &self.paraphrase, &self.design, &self.tune].into_iter().any(Option::is_some)
+        [&self.agent, &self.paraphrase, &self.design, &self.tune, &self.review].into_iter().any(Option::is_some)
     }
 
     /// The cast that was typed, over `base`.
@@ -109,6 +116,11 @@ impl ModelArgs {
                 None => base.reads,
                 Some(ModelReads::Unread) => Reads::Unread,
                 Some(ModelReads::All) => Reads::All,
+            },
+            review: match self.review.as_deref() {
+                None => base.review,
+                Some(NOBODY) => None,
+                Some(model) => Some(model.to_owned()),
             },
         }
     }

@@ -15,6 +15,7 @@ pub mod minimal;
 pub mod parity;
 pub mod perturb;
 mod ranks;
+pub mod replay;
 pub mod robustness;
 mod scoring;
 mod triage;

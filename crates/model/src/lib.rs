@@ -29,6 +29,7 @@ pub mod preventability;
 pub mod profile;
 pub mod record;
 pub mod results;
+pub mod review;
 pub mod rollout;
 pub mod run;
 pub mod scenario;

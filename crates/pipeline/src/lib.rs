@@ -56,7 +56,7 @@ pub use simulators::external::{
 };
 pub use simulators::{Simulator, SimulatorKind, metadrive_egos, start_simulator};
 pub use stages::{
-    AccountSummary, CaseSummary, DesignAttempt, DesignLog, Failure, FallbackReason, ModelSummary, RunSummary,
+    AccountSummary, CaseSummary, DesignAttempt, DesignLog, Failure, FallbackReason, ModelSummary, Reviews, RunSummary,
     SelectionStudy, StageReport, StrategyStudy, Summary, TestedRuns, check_choices, run_stage, unfaithful,
 };
 pub use suite::{Permissions, Resources, Stage, Suite};

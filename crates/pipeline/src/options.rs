@@ -156,6 +156,7 @@ impl Options {
         option("design", self.cast.design.clone(), default.cast.design);
         option("tune", self.cast.tune.clone(), default.cast.tune);
         option("rounds", self.cast.rounds.to_string(), default.cast.rounds.to_string());
+        option("review", self.cast.review.clone().unwrap_or_default(), String::new());
         option("repairs", self.cast.repairs.to_string(), default.cast.repairs.to_string());
         option("sim", self.simulator.name().into(), default.simulator.name().into());
         option("ego", self.ego.clone().unwrap_or_default(), String::new());

@@ -146,6 +146,8 @@ fn tags(case: &CaseRow) -> String {
         ("own", origin == "own"),
         ("other", origin == "other"),
         ("invented", origin == "invented"),
+        ("reviewed-right", case.review.as_ref().is_some_and(|by| by.review.is_right())),
+        ("reviewed-wrong", case.review.as_ref().is_some_and(|by| !by.review.is_right())),
         ("refused", case.refused.is_some()),
         ("parked", case.account.is_some() && case.before.is_some() && case.after.is_none()),
         ("met", case.situation_met() == Some(true)),

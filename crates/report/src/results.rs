@@ -9,7 +9,7 @@ use recrash_model::severity::Severity;
 use recrash_model::spreadsheet::inert;
 use recrash_model::triage::Triage;
 
-const HEADER: [&str; 56] = [
+const HEADER: [&str; 58] = [
     "scenario",
     "run",
     "road",
@@ -66,6 +66,8 @@ const HEADER: [&str; 56] = [
     "preventability",
     "struck_standing",
     "found_by_tuning",
+    "reviewed",
+    "review_note",
 ];
 
 /// The table.
@@ -145,6 +147,9 @@ fn row(suite: &SuiteView, case: &CaseRow, name: &str, run: Option<&RunRow>) -> V
     row.push(bracket.map_or_else(String::new, |bracket| bracket.label().to_owned()));
     row.push(run.filter(|_| !is_recorded).map_or_else(String::new, |run| struck_standing(run).to_string()));
     row.push(if is_last { case.found_by_tuning().to_string() } else { String::new() });
+    let review = case.review.as_ref().map(|by| &by.review);
+    row.push(review.map_or_else(String::new, |review| review.label().to_owned()));
+    row.push(review.map_or_else(String::new, |review| review.note.clone()));
     row
 }
 

@@ -15,6 +15,7 @@ use recrash_model::metrics::{Answer, Series};
 use recrash_model::narrative::{Narrative, Origin};
 use recrash_model::profile::SystemProfile;
 use recrash_model::record::{CrashRecord, RecordRef, RecordSet};
+use recrash_model::review::ReviewBy;
 use recrash_model::run::{JudgedRun, Judgement};
 use recrash_model::scenario::ScenarioDraft;
 use recrash_model::selection::{Cluster, Selection};
@@ -143,6 +144,9 @@ pub struct CaseRow {
     pub after: Option<RunRow>,
     /// How the other egos fare in the last run's scenario, where the ego under test fails it.
     pub triage: Option<Triage>,
+    /// What a language model finds that holds the recorded driver's run against the report, where one is cast.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub review: Option<ReviewBy>,
     /// Whether there is a scenario, and driving it failed.
     pub undriven: bool,
     /// Why the scenario was refused, where it was.

@@ -1,5 +1,5 @@
-//! The roles played by a language model: it reads reports into accounts, designs scenarios and tunes them. Whatever it says is
-//! checked; what cannot be used goes back to it a bounded number of times, and then the caller lets the rules take over.
+//! The roles played by a language model: it reads reports into accounts, designs scenarios, tunes them, and holds replays against
+//! reports. Whatever it says is checked; what cannot be used goes back to it a bounded number of times, and then the caller lets the rules take over.
 //!
 //! A role makes a [`Question`]; [`Answers`] answers it: live, from a batch, or from the ledger. So prompts, repairs and
 //! fallback are one path for every provider, and a provider is known to
@@ -21,6 +21,7 @@ mod providers;
 mod question;
 mod reading;
 mod repairs;
+mod review;
 mod schema;
 mod secrets;
 mod spending;
@@ -42,6 +43,7 @@ use crate::{AgentError, Brief, Design, Feedback, Paraphrase, Problem};
 use reading::AccountAnswer;
 use recrash_model::account::Account;
 use recrash_model::narrative::Narrative;
+use recrash_model::review::Review;
 use recrash_model::scenario::{
     Author, CrossMap, CurveMap, Environment, Obstacle, Partner, RoundaboutMap, SCENARIO_FORMAT, ScenarioDraft, Source,
     StraightMap, TeeMap,
@@ -52,7 +54,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 use serde_json::{Value, json};
 
-/// A language model in all three roles.
+/// A language model in all roles.
 #[derive(Clone, Copy)]
 pub struct LanguageModel<'a> {
     /// Model, such as `gpt-5-mini`.
@@ -153,11 +155,20 @@ pub fn tune_question(model: &str, brief: &Brief, tune: &TuneBrief) -> Result<Que
     question(model, Role::Tune, brief, prompts::tune(brief.scenario_id, tune)?)
 }
 
+/// The first question of the role that reviews. `replay` says in words what the recorded driver's run shows.
+///
+/// # Errors
+/// [`AgentError::Prompt`].
+pub fn review_question(model: &str, brief: &Brief, replay: &str) -> Result<Question, AgentError> {
+    question(model, Role::Review, brief, prompts::review(brief, replay)?)
+}
+
 fn question(model: &str, role: Role, brief: &Brief, text: String) -> Result<Question, AgentError> {
     let (name, schema) = match role {
         Role::Paraphrase => ("account", schemars::schema_for!(AccountAnswer).to_value()),
         Role::Design => ("scenario", schemars::schema_for!(ScenarioAnswer).to_value()),
         Role::Tune => ("values", schemars::schema_for!(ValuesAnswer).to_value()),
+        Role::Review => ("review", schemars::schema_for!(Review).to_value()),
     };
     let schema = schema::plain(schema);
     Ok(Question {
@@ -226,6 +237,14 @@ impl LanguageModel<'_> {
             let answer: AccountAnswer = fitting(value)?;
             accept(reading::account(&answer, base, record, self.model)?).map_err(|why| vec![why])
         })
+    }
+
+    /// Holds a replay against the reports of its incident; of the account nothing is said to the model.
+    ///
+    /// # Errors
+    /// [`AgentError`], where the model gives no usable answer.
+    pub fn review(&self, brief: &Brief, replay: &str) -> Result<Review, AgentError> {
+        self.converse(review_question(self.model, brief, replay)?, &[], |value| review::taken(fitting(value)?))
     }
 
     /// Proposes the next values of the parameters, given what was tried.

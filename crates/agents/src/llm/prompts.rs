@@ -24,13 +24,15 @@ const MOST_REPORTS: usize = 6;
 const MAX_NARRATIVE: usize = 4_000;
 /// Longest draft of an account that is sent. [characters]
 const MAX_DRAFT: usize = 24_000;
+/// Longest replay in words that is sent. [characters]
+const MAX_REPLAY: usize = 64_000;
 
 macro_rules! files {
     ($($name:literal),* $(,)?) => { [$(($name, include_str!(concat!("../../prompts/", $name)))),*] };
 }
 
 /// Every prompt file and worked example: name and content.
-const FILES: [(&str, &str); 14] = files![
+const FILES: [(&str, &str); 17] = files![
     "system.md",
     "paraphrase.md",
     "paraphrase_question.md",
@@ -44,6 +46,9 @@ const FILES: [(&str, &str); 14] = files![
     "tune.md",
     "tune_question.md",
     "tune_crossing.json",
+    "review.md",
+    "review_question.md",
+    "review_rear_end.json",
     "repair.md",
 ];
 
@@ -68,15 +73,18 @@ pub fn system(role: Role, profile: &SystemProfile) -> Result<String, AgentError>
             .into_iter()
             .collect::<Result<_, _>>()?,
         Role::Tune => vec![Example::of("tune_crossing.json", tune_example)?],
+        Role::Review => vec![Example::of("review_rear_end.json", review_example)?],
     };
     let examples = minijinja::Value::from(Serde(&examples));
     let task = file(match role {
         Role::Paraphrase => "paraphrase.md",
         Role::Design => "design.md",
         Role::Tune => "tune.md",
+        Role::Review => "review.md",
     });
     let profile = minijinja::Value::from(Serde(profile));
-    render("system.md", context! { task, profile, examples, stages => role != Role::Paraphrase })
+    let stages = matches!(role, Role::Design | Role::Tune);
+    render("system.md", context! { task, profile, examples, stages })
 }
 
 /// Asks for a narrative.
@@ -84,14 +92,26 @@ pub fn system(role: Role, profile: &SystemProfile) -> Result<String, AgentError>
 /// # Errors
 /// As [`system`].
 pub fn paraphrase(brief: &Brief) -> Result<String, AgentError> {
+    let draft = brief.account.map(|account| json!(AccountAnswer::of(account)));
+    paraphrase_question(brief.scenario_id, &quoted_records(brief), &draft.unwrap_or(Value::Null))
+}
+
+/// The reports of an incident as they are quoted, the one that speaks first.
+fn quoted_records(brief: &Brief) -> Vec<QuotedRecord> {
     let speaker = brief.speaker();
     let others = brief.records.iter().copied().filter(|record| speaker.is_none_or(|speaker| speaker.id != record.id));
     // Copies of a report say nothing new.
     let mut seen = BTreeSet::new();
     let new = speaker.into_iter().chain(others).filter(|record| seen.insert(record.narrative.as_str()));
-    let records: Vec<QuotedRecord> = new.take(MOST_REPORTS).map(QuotedRecord::new).collect();
-    let draft = brief.account.map(|account| json!(AccountAnswer::of(account)));
-    paraphrase_question(brief.scenario_id, &records, &draft.unwrap_or(Value::Null))
+    new.take(MOST_REPORTS).map(QuotedRecord::new).collect()
+}
+
+/// Asks whether a replay shows what the reports tell.
+///
+/// # Errors
+/// As [`system`].
+pub fn review(brief: &Brief, replay: &str) -> Result<String, AgentError> {
+    review_question(&quoted_records(brief), replay)
 }
 
 /// Asks for a scenario.
@@ -147,6 +167,12 @@ pub fn answer_form(draft: &ScenarioDraft) -> Value {
 fn paraphrase_question(id: &str, records: &[QuotedRecord], draft: &Value) -> Result<String, AgentError> {
     let (records, draft) = (minijinja::Value::from(Serde(records)), capped(&draft.to_string(), MAX_DRAFT));
     render("paraphrase_question.md", context! { scenario_id => id, records, draft })
+}
+
+/// Without the scenario's id, which tells what our reader made of the reports.
+fn review_question(records: &[QuotedRecord], replay: &str) -> Result<String, AgentError> {
+    let (records, replay) = (minijinja::Value::from(Serde(records)), capped(replay.trim_end(), MAX_REPLAY));
+    render("review_question.md", context! { records, replay })
 }
 
 fn design_question(id: &str, template: Template, narrative: &str) -> Result<String, AgentError> {
@@ -218,6 +244,16 @@ struct TuneExample {
 fn tune_example(example: &TuneExample) -> Result<String, AgentError> {
     let TuneExample { narrative, scenario, metrics, parameters, tries } = example;
     tune_question("example", narrative, scenario, metrics, parameters, tries)
+}
+
+#[derive(Deserialize)]
+struct ReviewExample {
+    records: Vec<QuotedRecord>,
+    replay: Vec<String>,
+}
+
+fn review_example(example: &ReviewExample) -> Result<String, AgentError> {
+    review_question(&example.records, &example.replay.join("\n"))
 }
 
 fn file(name: &str) -> &'static str {
@@ -359,7 +395,8 @@ mod tests {
     #[test]
     fn every_role_has_its_task_and_examples() {
         let profile: SystemProfile = toml::from_str(include_str!("../../../../profiles/paper.toml")).unwrap();
-        for (role, word) in [(Role::Paraphrase, "Read"), (Role::Design, "Design"), (Role::Tune, "Propose")] {
+        let words = ["Read", "Design", "Propose", "Hold"];
+        for (role, word) in Role::ALL.into_iter().zip(words) {
             let text = system(role, &profile).unwrap();
             assert!(text.contains(word) && text.contains("Answer:\n{\""), "{text}");
             assert!(!text.contains("{{") && !text.contains("{%") && !text.contains("undefined"), "{text}");

@@ -41,7 +41,7 @@ pub struct Purpose {
     pub attempt: usize,
 }
 
-/// The three roles.
+/// The roles.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Role {
@@ -51,11 +51,13 @@ pub enum Role {
     Design,
     /// Proposes other numbers.
     Tune,
+    /// Holds the replay against the report.
+    Review,
 }
 
 impl Role {
     /// All of them, in order.
-    pub const ALL: [Self; 3] = [Self::Paraphrase, Self::Design, Self::Tune];
+    pub const ALL: [Self; 4] = [Self::Paraphrase, Self::Design, Self::Tune, Self::Review];
 
     /// Name on the command line and in tables.
     pub fn name(self) -> &'static str {
@@ -63,6 +65,7 @@ impl Role {
             Self::Paraphrase => "paraphrase",
             Self::Design => "design",
             Self::Tune => "tune",
+            Self::Review => "review",
         }
     }
 }

@@ -5,5 +5,6 @@ mod designs;
 mod narratives;
 mod readings;
 mod real_records;
+mod reviews;
 mod support;
 mod worked_examples;

@@ -314,7 +314,7 @@ fn the_worked_examples_are_accounts_of_their_reports() {
         let (records, profile, repairs) = ([&record], support::paper(), Repairs::default());
         let read = |answer: &Value, base: &Account| {
             let brief = Brief { account: Some(base), ..support::brief("01", &records, &profile, 1) };
-            let script = Script::new(&[answer.clone()]);
+            let script = Script::new(std::slice::from_ref(answer));
             let model = LanguageModel { model: "m", answers: &script, max_repairs: 0, repairs: &repairs };
             model.read(&brief, base).unwrap_or_else(|e| panic!("{name}: {e}"))
         };

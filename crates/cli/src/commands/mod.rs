@@ -61,6 +61,8 @@ Examples:
   recrash run --where 'road = intersection' --budget 10 --out crossings
   recrash run --ego 'cmd:python3 my_ego.py'              a system of yours
   recrash run --profile paper --agent gpt-5-mini --max-cost 2    a language model in the roles
+  recrash run --records ads.csv --review gpt-5-mini --max-cost 2
+                                                         a language model reads each replay beside its report
 
 The same command goes on where it was stopped.";
 const NARRATE_EXAMPLES: &str = "\
@@ -78,6 +80,10 @@ Examples:
   recrash tune --aim severity                            the worst contact instead of the nearest failure
 
 Exit code 5: a scenario is not true to its record as tuned; the results are written all the same.";
+const REVIEW_EXAMPLES: &str = "\
+Examples:
+  recrash review suite --review gpt-5-mini               the replays of suite/; then recrash report
+  recrash review suite --review nobody                   takes what was found away again";
 const REPORT_EXAMPLES: &str = "\
 Examples:
   recrash report                                         of the suite in suite/
@@ -127,6 +133,9 @@ pub enum Command {
         after_help = "Examples:\n  recrash triage                 the tuned scenarios of suite/\n  recrash triage --ego idm       another system under test in the same tuned scenarios"
     )]
     Triage(StageArgs),
+    /// Have a language model read each replay beside its report, of a suite that goes by accounts; it changes no scenario.
+    #[command(after_help = REVIEW_EXAMPLES)]
+    Review(StageArgs),
     /// Stage 7: write report.html, junit.xml and results.csv.
     #[command(after_help = REPORT_EXAMPLES)]
     Report(StageArgs),
@@ -188,11 +197,11 @@ pub enum Command {
 impl Command {
     /// Whether the same command goes on where it was stopped: what works in a suite, or with a ledger.
     pub fn goes_on(&self) -> bool {
-        use Command::{Design, Eval, Narrate, Records, Report, Run, Select, Simulate, Triage, Tune};
+        use Command::{Design, Eval, Narrate, Records, Report, Review, Run, Select, Simulate, Triage, Tune};
         match self {
             Records(args) => args.out.is_some(),
             Simulate(args) => args.scenario.as_ref().is_none_or(|given| given.is_dir()),
-            Run(_) | Select(_) | Narrate(_) | Design(_) | Tune(_) | Triage(_) | Report(_) | Eval(_) => true,
+            Run(_) | Select(_) | Narrate(_) | Design(_) | Tune(_) | Triage(_) | Review(_) | Report(_) | Eval(_) => true,
             _ => false,
         }
     }
@@ -213,6 +222,7 @@ pub fn run(cli: &Cli) -> Result<(), PipelineError> {
         Command::Simulate(args) => simulate::run(args, output),
         Command::Tune(args) => stage::run(&args.suite(), &[Stage::Tune, Stage::Triage], output),
         Command::Triage(args) => stage::run(&args.suite(), &[Stage::Triage], output),
+        Command::Review(args) => stage::run(&args.suite(), &[Stage::Review], output),
         Command::Report(args) => run::report(args, output),
         Command::Export(args) => export::run(args, output),
         Command::Import(args) => import::run(args, output),

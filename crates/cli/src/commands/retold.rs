@@ -3,11 +3,12 @@
 use super::reconstruct::not_drawn;
 use super::simulate::REGULATION_DRIVERS;
 use crate::output::title;
-use crate::screen::{bold, println, sentence, yellow};
+use crate::screen::{bold, one_line, println, sentence, yellow};
 use crate::table::{Cell, number, table};
 use recrash_model::account::CrashType;
 use recrash_model::metrics::Answer;
-use recrash_pipeline::{AccountSummary, CaseSummary, RunSummary, Summary, TestedRuns};
+use recrash_model::review::Review;
+use recrash_pipeline::{AccountSummary, CaseSummary, Reviews, RunSummary, Summary, TestedRuns};
 use std::path::Path;
 
 /// Scenarios that the terminal lists; the page and results.csv have all.
@@ -16,6 +17,8 @@ const CASES_SHOWN: usize = 10;
 pub(super) const DELTA_V: &str = "delta-v ego / partner [m/s]";
 /// Remarks on scenarios that the terminal tells one by one.
 const REMARKS_SHOWN: usize = 5;
+/// Longest reason that it tells with one. [characters]
+const LONGEST_WHY: usize = 300;
 
 /// How a scenario ended for the system under test, the worst first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -92,7 +95,7 @@ fn delta_v(run: Option<&RunSummary>) -> String {
 /// Prints a run of a suite that goes by accounts.
 pub fn show(summary: &Summary, accounts: &AccountSummary, dir: &Path) {
     remarks(summary);
-    worst(&summary.cases);
+    worst(&summary.cases, summary.reviews().is_some());
     result(summary);
     let whole: usize = accounts.types.iter().map(|share| share.whole).sum();
     sentence(&format!(
@@ -104,10 +107,30 @@ pub fn show(summary: &Summary, accounts: &AccountSummary, dir: &Path) {
         summary.cases.len(),
     ));
     sentence(&format!("  {}", not_drawn(&accounts.facts)));
+    reviews(summary);
     if summary.sample {
         println!("  the built-in sample, invented; give real crash files with --records FILE");
     }
     println!("report: {} (every scenario, crash types, why others are not told)", dir.join("report.html").display());
+}
+
+/// What the model finds that holds replays against reports.
+fn reviews(summary: &Summary) {
+    let Some(Reviews { model, read, right, wrong }) = summary.reviews() else { return };
+    let named: Vec<String> = wrong.iter().map(|(name, count)| format!("{name} {count}")).collect();
+    let named = if named.is_empty() { String::new() } else { format!(": {}", named.join(", ")) };
+    let show = if right == 1 { "shows it" } else { "show them" };
+    let do_not = if read - right == 1 { "does not" } else { "do not" };
+    sentence(&format!(
+        "{model} reads {read} replays beside their reports: {right} {show}, {} {do_not}{named}",
+        read - right
+    ));
+    for model in summary.models.iter().filter(|model| model.is_review()) {
+        for reason in model.reasons.iter().take(REMARKS_SHOWN) {
+            let why: String = reason.why.chars().take(LONGEST_WHY).collect();
+            println!("  {} {}: {}", yellow("not reviewed:"), reason.id, one_line(&why));
+        }
+    }
 }
 
 /// Scenarios that were not run, or are not as told.
@@ -128,10 +151,12 @@ fn remarks(summary: &Summary) {
     }
 }
 
-fn worst(cases: &[CaseSummary]) {
+/// The scenarios in a table, the worst first; with what was found beside their reports, where somebody read.
+fn worst(cases: &[CaseSummary], reviewed: bool) {
     title(&format!("Scenarios, the worst {} of {}", CASES_SHOWN.min(cases.len()), cases.len()));
-    let header = ["verdict", "scenario", "what failed", "found", DELTA_V, "situation", "crash type", "as told"];
-    let spare = ["as told", "crash type", "situation", "found", DELTA_V];
+    let mut header = vec!["verdict", "scenario", "what failed", "found", DELTA_V, "situation", "crash type", "as told"];
+    header.extend(reviewed.then_some("read"));
+    let spare = ["as told", "crash type", "situation", "found", DELTA_V, "read"];
     let mut rows = table(&header).named_by("scenario").whole("what failed").without_first(&spare);
     let worst: Vec<&CaseSummary> = worst_first(cases).into_iter().take(CASES_SHOWN).collect();
     for case in &worst {
@@ -147,7 +172,7 @@ fn worst(cases: &[CaseSummary]) {
             None if Verdict::of(case) == Verdict::Parked => "parked",
             None => "-",
         };
-        rows.add_row(vec![
+        let mut row = vec![
             Cell::new(Verdict::of(case).label()),
             Cell::new(&case.id),
             Cell::new(what_failed(case)),
@@ -156,7 +181,9 @@ fn worst(cases: &[CaseSummary]) {
             Cell::new(situation),
             Cell::new(case.crash_type.map_or("", CrashType::label)),
             Cell::new(as_told),
-        ]);
+        ];
+        row.extend(reviewed.then(|| Cell::new(case.review.as_ref().map_or("-", Review::label))));
+        rows.add_row(row);
     }
     println!("{rows}");
     let shown = |verdict| worst.iter().any(|case| Verdict::of(case) == verdict);

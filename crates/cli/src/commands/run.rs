@@ -113,7 +113,7 @@ fn models(models: &[ModelSummary]) {
         for reason in &model.reasons {
             println!(
                 "  {} {} of {}: {}",
-                yellow("by the rules:"),
+                yellow(if model.is_review() { "by nobody:" } else { "by the rules:" }),
                 model.role,
                 reason.id,
                 one_line(&reason.why.chars().take(300).collect::<String>())

@@ -19,6 +19,7 @@ Examples:
   recrash simulate paper-suite --ego reference           the scenarios of another suite
   recrash simulate scenario.json --rollout rollout.json --json
   recrash simulate scenario.json --ego recorded --picture scenario.svg
+  recrash simulate scenario.json --ego recorded --words  the replay for a reader without a picture
 
 Exit code 5: a scenario of the suite is not true to its record; the results are written all the same.";
 
@@ -35,6 +36,9 @@ pub struct SimulateArgs {
     /// Where to draw the one scenario: its roads, everybody's way, and where all are at the ego's first contact (SVG).
     #[arg(long, value_name = "FILE", requires = "scenario")]
     pub picture: Option<PathBuf>,
+    /// Print in words what the one scenario shows: roads, signals, where everybody is every half second, who touches whom.
+    #[arg(long, requires = "scenario", conflicts_with = "json")]
+    pub words: bool,
     /// Options of the suite.
     #[command(flatten)]
     pub suite: SuiteArgs,
@@ -49,8 +53,9 @@ pub fn run(args: &SimulateArgs, output: Output) -> Result<(), PipelineError> {
         return stage::run(&args.suite, &[Stage::Simulate], output);
     };
     if scenario.is_dir() {
-        let given = [("--rollout", &args.rollout), ("--picture", &args.picture)];
-        if let Some((option, _)) = given.into_iter().find(|(_, given)| given.is_some()) {
+        let given =
+            [("--rollout", args.rollout.is_some()), ("--picture", args.picture.is_some()), ("--words", args.words)];
+        if let Some((option, _)) = given.into_iter().find(|(_, given)| *given) {
             let what = format!("{option} is for one scenario file, and {} is a folder", scenario.display());
             return Err(PipelineError::Usage(what));
         }
@@ -65,7 +70,7 @@ pub fn run(args: &SimulateArgs, output: Output) -> Result<(), PipelineError> {
     if args.suite.is_about_a_suite() {
         let file = scenario.display();
         let what = format!(
-            "{file} is one scenario file: --profile, --ego, --ego-timeout, --sim, --python, --rollout and --picture are for it, and the other options for suites"
+            "{file} is one scenario file: --profile, --ego, --ego-timeout, --sim, --python, --rollout, --picture and --words are for it, and the other options for suites"
         );
         return Err(PipelineError::Usage(what));
     }
@@ -83,6 +88,8 @@ pub fn run(args: &SimulateArgs, output: Output) -> Result<(), PipelineError> {
     })?;
     if output.json {
         output::json(&result.run);
+    } else if args.words {
+        println!("{}", result.words.trim_end());
     } else if !output.quiet {
         show(&result);
     }

@@ -11,7 +11,7 @@ fn next(stage: &str) -> Option<&'static str> {
         "narrate" => "design",
         "design" => "simulate",
         "simulate" => "tune",
-        "tune" | "triage" => "report",
+        "tune" | "triage" | "review" => "report",
         _ => return None,
     })
 }

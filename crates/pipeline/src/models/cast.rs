@@ -36,6 +36,9 @@ pub struct Cast {
     /// Which incidents a model reads, of a suite that goes by accounts.
     #[serde(default)]
     pub reads: Reads,
+    /// Holds each replay against its report, in a suite that goes by accounts: a model, or nobody.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub review: Option<String>,
 }
 
 /// Which incidents a language model reads.
@@ -62,6 +65,7 @@ impl Default for Cast {
             rounds: 3,
             repairs: REPAIRS,
             reads: Reads::default(),
+            review: None,
         }
     }
 }
@@ -69,19 +73,29 @@ impl Default for Cast {
 impl Cast {
     /// The models among the cast, each once.
     pub fn models(&self) -> Vec<&str> {
-        let mut names = vec![self.paraphrase.as_str(), &self.design, &self.tune];
-        names.retain(|name| *name != RULES);
+        let mut names = self.makers();
+        names.extend(self.review.as_deref());
         names.sort_unstable();
         names.dedup();
         names
     }
 
+    /// The models that make something of a suite: who reviews changes none of it.
+    pub fn makers(&self) -> Vec<&str> {
+        let names = [self.paraphrase.as_str(), &self.design, &self.tune];
+        names.into_iter().filter(|name| *name != RULES).collect()
+    }
+
     /// For the report.
     pub fn describe(&self) -> String {
-        if self.models().is_empty() {
-            return RULES.into();
+        let makers = match self.makers().is_empty() {
+            true => RULES.to_owned(),
+            false => format!("{} paraphrases, {} designs, {} tunes", self.paraphrase, self.design, self.tune),
+        };
+        match &self.review {
+            None => makers,
+            Some(model) => format!("{makers}; {model} reviews"),
         }
-        format!("{} paraphrases, {} designs, {} tunes", self.paraphrase, self.design, self.tune)
     }
 }
 

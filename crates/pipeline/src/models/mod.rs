@@ -28,8 +28,8 @@ const MAX_EXCHANGE: u64 = 64 << 20;
 
 /// Bytes of English that models count as a token, about.
 const BYTES_PER_TOKEN: usize = 4;
-/// Tokens of an account, about.
-const TOKENS_PER_ACCOUNT: u64 = 700;
+/// Tokens of an answer, about: of an account; a review is shorter.
+const TOKENS_PER_ANSWER: u64 = 700;
 
 /// Where a model's answers come from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -125,7 +125,7 @@ impl Models {
 
     /// About what so many questions of so many bytes together cost, in words.
     pub fn estimate(&self, name: &str, bytes: usize, questions: usize) -> String {
-        let (read, written) = ((bytes / BYTES_PER_TOKEN) as u64, questions as u64 * TOKENS_PER_ACCOUNT);
+        let (read, written) = ((bytes / BYTES_PER_TOKEN) as u64, questions as u64 * TOKENS_PER_ANSWER);
         let tokens = format!("about {} thousand tokens", (read + written).div_ceil(1_000));
         match self.prices.price(name) {
             Some(price) => {

@@ -8,7 +8,7 @@ use crate::profiles::load_profile;
 use crate::reading::named;
 use crate::simulators::external::Patience;
 use crate::simulators::{SimulatorKind, start_simulator};
-use recrash_lab::run_scenario;
+use recrash_lab::{replay, run_scenario};
 use recrash_model::run::JudgedRun;
 use recrash_model::{Diagnostic, Outcome};
 use recrash_roads::Scenario;
@@ -22,6 +22,8 @@ const MAX_SCENARIO_FILE: u64 = 1 << 20;
 pub struct FileRun {
     /// The run.
     pub run: JudgedRun,
+    /// What it shows, in words.
+    pub words: String,
     /// Remarks on the file.
     pub diagnostics: Vec<Diagnostic>,
 }
@@ -67,7 +69,8 @@ pub fn simulate_file(request: &FileRequest) -> Result<FileRun, PipelineError> {
     if let Some(picture) = picture {
         picture.write(recrash_report::picture(&scenario, &run.rollout).as_bytes())?;
     }
-    Ok(FileRun { run, diagnostics })
+    let words = replay::in_words(scenario.draft(), &run.rollout);
+    Ok(FileRun { run, words, diagnostics })
 }
 
 /// Reads and checks a scenario file.

@@ -23,5 +23,12 @@ pub fn check_choices(suite: &Suite) -> Result<(), PipelineError> {
             suite.profile().name
         )));
     }
+    if let (Tells::Templates, Some(model)) = (suite.profile().records.tells, &cast.review) {
+        return Err(PipelineError::bad_input(format!(
+            "the profile {} goes by templates: no recorded driver is run there that {model} could hold against a report (review); choose \
+             the profile open",
+            suite.profile().name
+        )));
+    }
     check_simulator(suite.options().simulator, suite.ego())
 }

@@ -1,5 +1,6 @@
 //! What was made of a case, as far as it went: read from the suite's files for tables, page and summary.
 
+use super::review::Reviewed;
 use super::{Cases, DesignLog, Failure, cases, edited_files, failures, retold};
 use crate::error::PipelineError;
 use crate::models::cast::AgentLog;
@@ -27,6 +28,8 @@ pub(super) struct Case<'a> {
     pub account: Option<AccountRow>,
     /// The recorded driver's run, in a suite that goes by accounts.
     pub recorded: Option<Ran>,
+    /// What a model finds that holds the recorded driver's run against the report, where one is cast.
+    pub review: Option<Reviewed>,
     /// As designed.
     pub first: Option<Ran>,
     /// As tuned.
@@ -98,6 +101,7 @@ impl<'a> Case<'a> {
             true => run(Stage::Simulate, names::scenario(id), names::recorded_run(id))?,
             false => None,
         };
+        let review = optional(suite, &names::review(id), made(Stage::Review) && recorded.is_some())?;
         let first = run(Stage::Simulate, names::scenario(id), names::first_run(id))?;
         let tuned = match run(Stage::Triage, names::tuned(id), names::tuned_run(id))? {
             None => None,
@@ -116,7 +120,20 @@ impl<'a> Case<'a> {
         };
         let triage = optional(suite, &names::triage(id), tuned.is_some())?;
         let reference = optional(suite, &names::reference_run(id), triage.is_some())?;
-        Ok(Self { cluster, narrative, design, account, recorded, first, tuned, triage, reference, failure, edited })
+        Ok(Self {
+            cluster,
+            narrative,
+            design,
+            account,
+            recorded,
+            review,
+            first,
+            tuned,
+            triage,
+            reference,
+            failure,
+            edited,
+        })
     }
 }
 

@@ -16,6 +16,7 @@ mod own;
 mod records;
 mod report;
 mod retold;
+mod review;
 mod run_summary;
 mod second_reading;
 mod select;
@@ -29,9 +30,10 @@ pub(crate) use cases::Cases;
 pub use choices::check_choices;
 pub use design::{DesignAttempt, DesignLog};
 pub use failures::{Failure, unfaithful};
+pub(crate) use review::Beside;
 pub use run_summary::RunSummary;
 pub use select::{SelectionStudy, StrategyStudy};
-pub use summary::{AccountSummary, CaseSummary, FallbackReason, ModelSummary, Summary, TestedRuns};
+pub use summary::{AccountSummary, CaseSummary, FallbackReason, ModelSummary, Reviews, Summary, TestedRuns};
 
 use crate::error::PipelineError;
 use crate::models::cast::RULES;
@@ -45,11 +47,17 @@ use recrash_model::profile::Tells;
 use recrash_model::selection::Cluster;
 use recrash_model::{Diagnostic, Location, Severity};
 
-/// The stages that work case by case, in order: of a suite that goes by templates, or by accounts.
-pub(crate) fn case_stages(suite: &Suite) -> [CaseStage; 5] {
+/// The stages that work case by case, in order: of a suite that goes by templates, or by accounts. The last of those is there where a
+/// model is cast for it.
+pub(crate) fn case_stages(suite: &Suite) -> Vec<CaseStage> {
     match suite.profile().records.tells {
-        Tells::Templates => [narrate::DECLARED, design::DECLARED, simulate::DECLARED, tune::DECLARED, triage::DECLARED],
-        Tells::Accounts => retold::DECLARED,
+        Tells::Templates => {
+            vec![narrate::DECLARED, design::DECLARED, simulate::DECLARED, tune::DECLARED, triage::DECLARED]
+        }
+        Tells::Accounts => retold::DECLARED
+            .into_iter()
+            .chain(suite.options().cast.review.is_some().then_some(review::DECLARED))
+            .collect(),
     }
 }
 
@@ -110,9 +118,11 @@ fn run(work: &StageWork) -> Result<StageReport, PipelineError> {
         Stage::Records => records::run(work),
         Stage::Select => select::run(work),
         Stage::Report => report::run(work),
+        Stage::Review => review::run(work),
         _ => {
             let declared = case_stages(work.suite).into_iter().find(|declared| declared.stage == work.stage);
-            per_case(work, &declared.unwrap_or_else(|| unreachable!("every other stage works case by case")))
+            let declared = declared.unwrap_or_else(|| unreachable!("every other stage works case by case"));
+            per_case(work, &declared, &Cases::read(work.suite)?)
         }
     }
 }
@@ -195,17 +205,16 @@ fn edit_remark(stage: &str, id: &str, course: Course) -> Option<Diagnostic> {
 }
 
 /// Runs a stage that works case by case, without the cases that failed before.
-fn per_case(work: &StageWork, declared: &CaseStage) -> Result<StageReport, PipelineError> {
+fn per_case(work: &StageWork, declared: &CaseStage, cases: &Cases) -> Result<StageReport, PipelineError> {
     let suite = work.suite;
-    let cases = Cases::read(suite)?;
     let simulator = declared.runs_ego.then(|| suite.simulator()).transpose()?;
-    let bench = Bench { suite, cases: &cases, simulator };
+    let bench = Bench { suite, cases, simulator };
     let clusters = cases.up_to(suite, declared.stage);
     let mut report = work.units(
         &clusters,
         |cluster| &cluster.scenario_id,
         declared.editable,
-        |cluster| case_inputs(suite, declared, &cases, cluster),
+        |cluster| case_inputs(suite, declared, cases, cluster),
         |cluster| (declared.work)(&bench, cluster),
     )?;
     let failed = |cluster: &&Cluster| {
@@ -230,7 +239,7 @@ pub(crate) fn case_inputs(
 ) -> Result<Vec<String>, PipelineError> {
     let id = &cluster.scenario_id;
     let mut records = cases.records_of(cluster);
-    if suite.options().cast.models().is_empty() {
+    if declared.stage != Stage::Review && suite.options().cast.makers().is_empty() {
         records.truncate(1);
     }
     let mut inputs = cases.inputs(cluster, &records);

@@ -27,7 +27,7 @@ use recrash_roads::{RunError, Scenario};
 use recrash_search::Next;
 use recrash_sim::{Ego, Native};
 
-/// The stages, in order.
+/// The stages that make something of a case, in order.
 pub(super) const DECLARED: [CaseStage; 5] = [
     CaseStage {
         stage: Stage::Narrate,

@@ -7,6 +7,7 @@ use super::{Cases, DesignLog};
 use crate::models::cast::{AgentLog, Cast, RULES};
 use crate::options::RecordSource;
 use crate::suite::Suite;
+use recrash_agents::llm::Role;
 use recrash_lab::coverage::{Incident, Tested, coverage};
 use recrash_model::account::{AccountSet, CrashType, FactShare, TypeShare, Untold};
 use recrash_model::cause::{Cause, Failures};
@@ -15,6 +16,7 @@ use recrash_model::metrics::Answer;
 use recrash_model::narrative::Origin;
 use recrash_model::preventability::Bracket;
 use recrash_model::record::{FunnelStep, RecordRef};
+use recrash_model::review::Review;
 use recrash_model::selection::{Coverage, EmbeddingInfo, StageTables, Strategy, TemplateCount};
 use recrash_model::template::Template;
 use recrash_model::triage::{FailureClass, Triage};
@@ -104,7 +106,7 @@ impl AccountSummary {
 /// How a model did in a role.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ModelSummary {
-    /// `paraphrase`, `design` or `tune`.
+    /// `paraphrase`, `design`, `tune` or `review`.
     pub role: String,
     /// Model that was asked.
     pub model: String,
@@ -112,7 +114,7 @@ pub struct ModelSummary {
     pub first_answer: usize,
     /// Scenarios with an answer that was accepted after repair.
     pub after_repair: usize,
-    /// Scenarios where the rules took over.
+    /// Scenarios where the rules took over; of a review, those that nobody reviewed.
     pub fallback: usize,
     /// Scenarios with nothing to ask: a contact as designed needs no tuning.
     pub not_asked: usize,
@@ -138,12 +140,18 @@ impl ModelSummary {
     /// For a line of text: `18 of 20 at the first answer, 1 after repair, 1 by the rules`.
     pub fn describe(&self) -> String {
         format!(
-            "{} of {} at the first answer, {} after repair, {} by the rules",
+            "{} of {} at the first answer, {} after repair, {} {}",
             self.first_answer,
             self.asked(),
             self.after_repair,
-            self.fallback
+            self.fallback,
+            if self.is_review() { "by nobody" } else { "by the rules" }
         )
+    }
+
+    /// Whether it held replays against reports: no rules take over there.
+    pub fn is_review(&self) -> bool {
+        self.role == Role::Review.name()
     }
 }
 
@@ -185,6 +193,12 @@ pub struct CaseSummary {
     /// The recorded driver's run, in a suite that goes by accounts.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub recorded: Option<RunSummary>,
+    /// How the review of that run came about, where a model is cast for it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub reviewed: Option<RoleSummary>,
+    /// What it finds.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub review: Option<Review>,
     /// Whether a signal or a sign stands in the scenario that the recorded driver drives.
     #[serde(default)]
     pub signs: bool,
@@ -202,6 +216,19 @@ pub struct CaseSummary {
     pub failure: Option<Failure>,
     /// Points the search scored.
     pub points: usize,
+}
+
+/// Reviews in numbers.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Reviews<'a> {
+    /// The model that read.
+    pub model: &'a str,
+    /// Replays that it read.
+    pub read: usize,
+    /// Of those, replays that show the crash that is told.
+    pub right: usize,
+    /// By question, the others that show it otherwise; the most frequent first.
+    pub wrong: Vec<(&'static str, usize)>,
 }
 
 /// Runs of the system under test, in numbers.
@@ -229,6 +256,23 @@ impl Summary {
     /// Scenarios that tell their own record, another one, and nobody's crash.
     pub fn origins(&self) -> [usize; 3] {
         ["own", "other", "invented"].map(|name| self.cases.iter().filter(|case| case.is_told(name)).count())
+    }
+
+    /// What the model finds that holds replays against reports: who it is, how many it reads, how many of them show their crash, and in
+    /// how many of the others each question is answered by no; nothing where none is cast.
+    pub fn reviews(&self) -> Option<Reviews<'_>> {
+        let model = self.models.iter().find(|model| model.is_review())?.model.as_str();
+        let reviews: Vec<&Review> = self.cases.iter().filter_map(|case| case.review.as_ref()).collect();
+        let mut wrong: Vec<(&'static str, usize)> = Vec::new();
+        for name in reviews.iter().flat_map(|review| review.wrong()) {
+            match wrong.iter_mut().find(|(known, _)| *known == name) {
+                Some((_, count)) => *count += 1,
+                None => wrong.push((name, 1)),
+            }
+        }
+        wrong.sort_by_key(|(name, count)| (std::cmp::Reverse(*count), *name));
+        let right = reviews.iter().filter(|review| review.is_right()).count();
+        Some(Reviews { model, read: reviews.len(), right, wrong })
     }
 
     /// Scenarios that went all the way.
@@ -328,6 +372,8 @@ impl CaseSummary {
             edited: case.edited.clone(),
             crash_type: case.account.as_ref().map(|account| account.crash_type),
             recorded: case.recorded.as_ref().map(|ran| RunSummary::new(&ran.run)),
+            reviewed: case.review.as_ref().map(|reviewed| agent(&reviewed.agent)),
+            review: case.review.as_ref().and_then(|reviewed| reviewed.review.clone()),
             signs: case.recorded.as_ref().is_some_and(|ran| !ran.scenario.draft().control.is_empty()),
             situation_met: case.tuned.as_ref().and_then(|tuned| tuned.ran.run.situation_met()),
             first: case.first.as_ref().map(|ran| RunSummary::new(&ran.run)),
@@ -399,10 +445,12 @@ fn models(cast: &Cast, cases: &[CaseSummary], readers: &BTreeMap<String, AgentLo
         true => of_cases(|case| case.narrated.as_ref()),
         false => readers.iter().map(|(incident, log)| (incident.clone(), agent(log))).collect(),
     };
+    let reviewer = cast.review.clone().unwrap_or_else(|| RULES.to_owned());
     let roles = [
         ("paraphrase", &cast.paraphrase, read),
         ("design", &cast.design, of_cases(|case| case.designed.as_ref())),
         ("tune", &cast.tune, of_cases(|case| case.tuned_by.as_ref())),
+        (Role::Review.name(), &reviewer, of_cases(|case| case.reviewed.as_ref())),
     ];
     let of_model = |(role, model, played): (&str, &String, Played)| {
         let count = |word: &str| played.iter().filter(|(_, is)| is.outcome == word).count();

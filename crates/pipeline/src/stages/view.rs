@@ -2,6 +2,7 @@
 
 use super::Cases;
 use super::made::{Case, Ran};
+use super::review::Reviewed;
 use super::summary::Summary;
 use crate::files::paths::quoted;
 use crate::options::{Options, RecordSource};
@@ -56,7 +57,8 @@ fn model_remarks(summary: &Summary) -> Vec<Diagnostic> {
         };
         tell(Severity::Note, format!("{} by {}: {}", model.role, model.model, model.describe()));
         for reason in &model.reasons {
-            tell(Severity::Warning, format!("{}: the rules took over from {}: {}", reason.id, model.model, reason.why));
+            let what = if model.is_review() { "nobody reviews it instead of" } else { "the rules took over from" };
+            tell(Severity::Warning, format!("{}: {what} {}: {}", reason.id, model.model, reason.why));
         }
     }
     remarks
@@ -84,6 +86,7 @@ pub(super) fn row(suite: &Suite, cases: &Cases, position: usize, case: &Case) ->
         untuned: untuned.map(|(ran, file)| run_row(suite, ran, &file(id))),
         after: after.map(|(ran, file)| run_row(suite, ran, &file(id))),
         triage: case.triage.clone(),
+        review: case.review.as_ref().and_then(Reviewed::by),
         undriven: case.failure.as_ref().is_some_and(|at| DRIVEN_IN.iter().any(|stage| stage.name() == at.stage)),
         refused: case.failure.as_ref().map(ToString::to_string),
         edited: case.edited.clone(),

@@ -50,13 +50,15 @@ pub enum Stage {
     Tune,
     /// Tuned scenarios to judged runs, and failures to what they are worth.
     Triage,
+    /// Runs of the recorded driver to reviews, where a model is cast for that.
+    Review,
     /// All of it to a page.
     Report,
 }
 
 impl Stage {
     /// Every stage, in order.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Records,
         Self::Select,
         Self::Narrate,
@@ -64,6 +66,7 @@ impl Stage {
         Self::Simulate,
         Self::Tune,
         Self::Triage,
+        Self::Review,
         Self::Report,
     ];
 
@@ -77,6 +80,7 @@ impl Stage {
             Self::Simulate => "simulate",
             Self::Tune => "tune",
             Self::Triage => "triage",
+            Self::Review => "review",
             Self::Report => "report",
         }
     }
@@ -311,6 +315,7 @@ impl Suite {
             Stage::Narrate => cast.paraphrase != RULES,
             Stage::Design => cast.design != RULES,
             Stage::Tune => cast.tune != RULES,
+            Stage::Review => cast.review.is_some(),
             Stage::Records | Stage::Select | Stage::Simulate | Stage::Triage | Stage::Report => false,
         };
         match self.askers.as_ref().filter(|_| by_model) {

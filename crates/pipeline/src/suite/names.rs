@@ -44,6 +44,8 @@ pub fn failure(stage: Stage, id: &str) -> String {
         Stage::Simulate => "5-runs",
         Stage::Tune => "6-tuned",
         Stage::Triage => "7-tuned-runs",
+        // Beside the review, which is beside the run that it is of.
+        Stage::Review => return format!("5-runs/{id}.review{FAILURE}"),
         Stage::Records | Stage::Select | Stage::Narrate | Stage::Report => "3-narratives",
     };
     format!("{folder}/{id}{FAILURE}")
@@ -71,6 +73,10 @@ pub fn design_log(id: &str) -> String {
 /// Judged run of the recorded driver.
 pub fn recorded_run(id: &str) -> String {
     format!("5-runs/{id}.recorded.json")
+}
+/// What a reader finds who holds that run against its report.
+pub fn review(id: &str) -> String {
+    format!("5-runs/{id}.review.json")
 }
 /// Judged run of the scenario as designed.
 pub fn first_run(id: &str) -> String {

@@ -218,8 +218,8 @@ fn model_accounts(
         .flat_map(|incident| incident.reports.iter().map(move |report| (report.record.id.report_id.as_str(), incident)))
         .collect();
     let read = |label: &Label| -> Result<LabelledAccount, PipelineError> {
-        let incident = of_report.get(label.record.report_id.as_str());
-        let Some((incident, base)) = incident.and_then(|&&ref it| Some((it, recrash_reader::account(it)?))) else {
+        let incident = of_report.get(label.record.report_id.as_str()).copied();
+        let Some((incident, base)) = incident.and_then(|it| Some((it, recrash_reader::account(it)?))) else {
             return Err(PipelineError::bad_input("it has no narrative that can be read"));
         };
         let reports: Vec<&CrashRecord> = incident.reports.iter().map(|report| &report.record).collect();

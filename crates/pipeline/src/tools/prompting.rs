@@ -5,7 +5,7 @@ use crate::models::cast::RULES;
 use crate::options::Options;
 use crate::progress::NoProgress;
 use crate::reading::scenarios::read_scenario;
-use crate::stages::{Cases, run_stage};
+use crate::stages::{Beside, Cases, run_stage};
 use crate::suite::names;
 use crate::suite::{Resources, Stage, Suite};
 use recrash_agents::llm::{
@@ -77,16 +77,20 @@ pub fn prompt(request: &PromptRequest) -> Result<Prompt, PipelineError> {
     let brief = cases.brief(&suite, &cluster, &records, account.as_ref());
     let cast = &suite.options().cast;
     let played = match request.role {
-        Role::Paraphrase => &cast.paraphrase,
+        Role::Paraphrase => cast.paraphrase.as_str(),
         Role::Design => &cast.design,
         Role::Tune => &cast.tune,
+        Role::Review => cast.review.as_deref().unwrap_or(RULES),
     };
     let model = match &request.model {
         Some(model) => model,
         None if played == RULES => "MODEL",
         None => played,
     };
-    let question = question(&suite, &brief, request.role, model)?;
+    let question = match request.role {
+        Role::Review => about_replay(&suite, &cases, &cluster, model)?,
+        role => question(&suite, &brief, role, model)?,
+    };
     Ok(Prompt { format: "recrash.prompt/1".into(), prompts: prompts_version(), hash: question.hash(), question })
 }
 
@@ -153,6 +157,18 @@ fn question(suite: &Suite, brief: &Brief, role: Role, model: &str) -> Result<Que
     let (narrative, metrics, parameters) = (&narrative, &first.metrics, parameters.as_slice());
     let told = TuneBrief { narrative, draft, metrics, parameters, history: &history };
     tune_question(model, brief, &told).map_err(failed)
+}
+
+/// A question about a replay: there is none before the recorded driver was run.
+fn about_replay(suite: &Suite, cases: &Cases, cluster: &Cluster, model: &str) -> Result<Question, PipelineError> {
+    let id = &cluster.scenario_id;
+    if stored::<JudgedRun>(suite, &names::recorded_run(id)).is_none() {
+        return Err(PipelineError::bad_input(format!(
+            "there is no replay of {id} yet: run a suite that goes by accounts, and name its folder"
+        )));
+    }
+    let question = Beside::read(suite, cases, cluster)?.question(model);
+    question.map_err(|e: AgentError| PipelineError::bad_input(e.to_string()))
 }
 
 fn designed(suite: &Suite, brief: &Brief, narrative: &Narrative) -> Result<Scenario, PipelineError> {

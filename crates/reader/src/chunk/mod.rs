@@ -547,8 +547,9 @@ impl Chunker<'_> {
     /// "on the right front of the van" is a part, "from the right lane" a lane.
     fn is_no_relation(&self, at: usize, length: usize) -> bool {
         let (last, behind) = (self.text(at + length - 1), at + length);
-        // "on its left side mirror".
-        let mirror = last == "side" && matches!(self.text(behind), "mirror" | "mirrors" | "door" | "doors" | "window");
+        // "on its left side mirror", "from the front door to the rear wheel".
+        let mirror = matches!(last, "side" | "front")
+            && matches!(self.text(behind), "mirror" | "mirrors" | "door" | "doors" | "window");
         let side = matches!(last, "left" | "right" | "rear") || mirror;
         // "at the rear of its passenger side".
         let own = behind + usize::from(is_determiner(self.text(behind)));

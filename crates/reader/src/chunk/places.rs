@@ -17,6 +17,9 @@ const LEFT: &[&str] = &["left", "leftmost", "inside", "fast", "inner", "innermos
 const RIGHT: &[&str] = &["right", "rightmost", "outside", "slow", "outer", "outermost"];
 const BUS: &[&str] = &["bus", "transit"];
 const TURN: &[&str] = &["turn", "turning"];
+/// Words for one of two lanes for the same turn.
+const OF_TWO: &[&str] = &["outer", "outside", "outermost", "inner", "inside", "innermost"];
+
 const MIDDLE: &[&str] = &["center", "middle", "centre"];
 
 /// What the words before "lane" make of it: the first whose words are all there.
@@ -218,6 +221,8 @@ impl Chunker<'_> {
             return None;
         }
         let named = LANES.iter().find(|(names, _)| names.iter().all(|words| has(words))).map(|(_, lane)| *lane);
+        let other = has(TURN) && has(OF_TWO) && !has(&["left", "right", "leftmost", "rightmost"]);
+        let named = if other { self.turn_lanes_before(at).or(named) } else { named };
         if let Some((lane, length)) = self.told_behind_lane(end) {
             // "the left turn lane farthest to the right".
             let turns = named.filter(|lane| matches!(lane, LaneWord::LeftTurn | LaneWord::RightTurn));
@@ -228,6 +233,16 @@ impl Chunker<'_> {
             return None;
         }
         Some((named?, end + 1 - at))
+    }
+
+    /// "the inner of two left turn lanes, and a van in the outer turn lane": that is for the same turn.
+    fn turn_lanes_before(&self, at: usize) -> Option<LaneWord> {
+        let before = (at.saturating_sub(LANES_BEFORE)..at).rev();
+        before.filter(|at| TURN.contains(&self.text(at + 1))).find_map(|at| match self.text(at) {
+            "left" => Some(LaneWord::LeftTurn),
+            "right" => Some(LaneWord::RightTurn),
+            _ => None,
+        })
     }
 
     /// "the rightmost of the three lanes", "the right one of two lanes": small words between.

@@ -294,7 +294,7 @@ impl Candidate<'_> {
         // "at an unprotected crossing", "for the same crossing".
         let plain = matches!(
             self.word_before,
-            "unprotected" | "unmarked" | "marked" | "same" | "level" | "grade" | "controlled"
+            "unprotected" | "unmarked" | "marked" | "level" | "grade" | "controlled" | "same"
         ) && self.is_single();
         if self.word(0) == "crossing" && plain {
             return true;
@@ -631,6 +631,10 @@ impl Chunker<'_> {
             return false;
         }
         if word.ends_with("ly") && at >= 2 && self.text(at - 2) == "to" {
+            return true;
+        }
+        // "could only brake".
+        if word == "only" && at >= 2 && self.text(at - 2) == "could" {
             return true;
         }
         match word {

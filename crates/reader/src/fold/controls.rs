@@ -19,6 +19,7 @@ pub(super) fn controls(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<Control>
             {
                 None
             }
+            Sense::LightGreen if turns_on_red(reading) => None,
             // "waiting for the light to turn green": it is red.
             Sense::LightGreen if frame.form == Form::Base && !frame.happened() => Some(SignalState::Red),
             Sense::LightGreen if was_green(reading, frame, &all) => Some(SignalState::Green),
@@ -461,6 +462,19 @@ fn named(words: &[&str]) -> Option<(ControlDevice, Option<SignalState>, usize)> 
 fn told_in(reading: &Reading<'_>, frame: &Frame) -> (usize, usize) {
     (reading.story.sentences[frame.sentence].first, frame.first)
 }
+
+/// "turned right on red. A van came through on the green": that one's.
+pub(super) fn turns_on_red(reading: &Reading<'_>) -> bool {
+    let red = |frame: &Frame| {
+        let words = &reading.story.tokens[frame.first..reading.story.sentences[frame.sentence].end];
+        let turn = words.iter().take(ON_RED_WITHIN).position(|token| token.text == "on");
+        turn.is_some_and(|on| words.get(on + 1).is_some_and(|token| token.text == "red"))
+    };
+    reading.before(SUBJECT).any(|(_, frame)| matches!(frame.act(), Some(Act::Turn | Act::SetOff)) && red(frame))
+}
+
+/// So many words after the verb of a turn, at most, stand those that it was made at red: "went to turn right on red". [tokens]
+const ON_RED_WITHIN: usize = 7;
 
 /// "The walk signal", "the van's light", "the light for the cross traffic": somebody else's.
 fn is_of_others(reading: &Reading<'_>, (first, told): (usize, usize)) -> bool {

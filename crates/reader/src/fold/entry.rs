@@ -146,6 +146,26 @@ fn in_a_lane(reading: &Reading<'_>, frame: &Frame) -> Option<usize> {
     (word(lane) == "lane").then_some(lane + 1)
 }
 
+/// "was standing at the right edge of the lane", "stopped on the edge of the road": the token behind the edge, or the lane.
+fn at_the_edge(reading: &Reading<'_>, frame: &Frame) -> Option<usize> {
+    let end = reading.story.sentences[frame.sentence].end;
+    let word = |at: usize| if at < end { reading.story.tokens[at].text.as_str() } else { "" };
+    let from = frame.end + usize::from(matches!(word(frame.end), "close" | "over"));
+    if !matches!(word(from), "at" | "on" | "along" | "by" | "near" | "to") {
+        return None;
+    }
+    let far = usize::from(word(from + 2) == "far");
+    let right = usize::from(matches!(word(from + 2 + far), "right" | "righthand"));
+    let hand = usize::from(right > 0 && word(from + 3 + far) == "hand");
+    let edge = from + 2 + far + right + hand;
+    let article = if matches!(word(edge + 2), "the" | "its") { 3 } else { 2 };
+    match word(edge) {
+        "edge" if word(edge + 1) == "of" && word(edge + article) == "lane" => Some(edge + article + 1),
+        "edge" => Some(edge + 1),
+        _ => None,
+    }
+}
+
 /// The words of an act.
 pub(super) fn words(reading: &Reading<'_>, frame: &Frame, act: Act) -> Source {
     let (first, end) = match act {
@@ -188,13 +208,37 @@ pub(super) fn of_door(reading: &Reading<'_>, frame: &Frame) -> (usize, usize) {
 /// The token behind the words of an act: of who goes into or through an intersection, or stands in a lane, up to that word.
 fn reach(reading: &Reading<'_>, frame: &Frame, act: Act) -> usize {
     if matches!(act, Act::Hold | Act::Stop | Act::Park) {
-        return in_a_lane(reading, frame).unwrap_or(frame.end);
+        return in_a_lane(reading, frame).or_else(|| at_the_edge(reading, frame)).unwrap_or(frame.end);
+    }
+    if matches!(act, Act::Drift | Act::Swerve) {
+        return within_its_lane(reading, frame).unwrap_or(frame.end);
     }
     let word = |at: usize| reading.story.tokens[at].text.as_str();
     let end = reading.story.sentences[frame.sentence].end;
     let from = frame.end + usize::from(frame.end < end && matches!(word(frame.end), "into" | "through"));
     let behind = if act == Act::Enter { intersection(reading, from, frame.sentence, &OF_LIGHT) } else { None };
     behind.unwrap_or(frame.end)
+}
+
+/// So many words stand between a verb and those for the lane that is not left, at most: "shifted about two feet to the left within". [tokens]
+const BEFORE_WITHIN: usize = 8;
+
+/// The end of the words that tell that somebody went aside and did not leave its lane: "moved to the right within its lane".
+fn within_its_lane(reading: &Reading<'_>, frame: &Frame) -> Option<usize> {
+    let end = reading.story.sentences[frame.sentence].end;
+    let words: Vec<&str> = reading.story.tokens[frame.first..end]
+        .iter()
+        .map(|token| token.text.as_str())
+        .take(BEFORE_WITHIN + 5)
+        .collect();
+    let within = words.iter().position(|word| *word == "within").filter(|at| *at <= BEFORE_WITHIN)?;
+    let plain = !words[..within].iter().any(|word| ENDS.contains(word) && !matches!(*word, "toward" | "towards"));
+    let lane = match words[within + 1..] {
+        ["its" | "the" | "their", "lane", ..] => within + 3,
+        ["its" | "the" | "their", "own" | "travel", "lane", ..] => within + 4,
+        _ => return None,
+    };
+    plain.then_some(frame.first + lane)
 }
 
 /// "began to proceed through the intersection", and not "and came to a stop" there.

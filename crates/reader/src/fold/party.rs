@@ -84,7 +84,7 @@ fn is_strip_beside(lane: &Fact<LaneWord>, astride: Option<&Fact<Astride>>) -> bo
 /// "was waiting in the center lane. A van coming up in the same lane": in that of the subject vehicle.
 fn in_the_same_lane(reading: &Reading<'_>, actor: Actor) -> Option<(LaneWord, usize, usize)> {
     let (subject, known) = (&reading.story.world.actors[SUBJECT], &reading.story.world.actors[actor]);
-    let (own, ..) = subject.lane.filter(|_| actor != SUBJECT)?;
+    let (own, told, _) = subject.lane.filter(|_| actor != SUBJECT)?;
     if subject.heading.zip(known.heading).is_some_and(|(one, other)| one.0 != other.0) {
         return None;
     }
@@ -93,7 +93,8 @@ fn in_the_same_lane(reading: &Reading<'_>, actor: Actor) -> Option<(LaneWord, us
     let sentence = reading.story.sentences[*number];
     let (first, words) = (sentence.first, &reading.story.tokens[sentence.first..sentence.end]);
     let at = words.windows(2).position(|pair| pair[0].text == "same" && pair[1].text == "lane")?;
-    (!changes).then_some((own, first + at, first + at + 2))
+    // A lane that is told later, such as the one in which it stopped, is not meant.
+    (!changes && told < first + at).then_some((own, first + at, first + at + 2))
 }
 
 /// "A van going south entered the northbound lane to pass": the lane of those who come the other way.

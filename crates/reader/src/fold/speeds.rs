@@ -3,7 +3,7 @@
 use super::Reading;
 use crate::frame::Frame;
 use crate::lexicon::{Adjective, Form, Meaning, Sense};
-use crate::token::{Token, TokenKind};
+use crate::token::{Sentence, Token, TokenKind};
 use crate::world::{Actor, SUBJECT, same_kind};
 use recrash_model::account::{Act, Fact, Kind, Speed, SpeedMeaning};
 use recrash_model::record::MPS_PER_MPH;
@@ -102,17 +102,65 @@ fn slows_later(reading: &Reading<'_>, actor: Actor, number: usize) -> bool {
     })
 }
 
-/// "the speed of the van was 5 mph", "an impact from the van at 1 mph": whose speed it is by a noun, and whether that names the contact.
+/// Who is meant by a name, of which these words tell: the subject vehicle, or the partner of a kind that fits.
+fn owner_named(reading: &Reading<'_>, meaning: Meaning) -> Option<Actor> {
+    let kind = |who: Actor| reading.story.world.actors[who].kind;
+    match meaning {
+        Meaning::Subject | Meaning::Company => Some(SUBJECT),
+        Meaning::Kind(Kind::Vehicle) => None,
+        Meaning::Adjective(Adjective::Other | Adjective::Another) => reading.contacts.partner,
+        // "the speed of the bus ahead", of whom the van struck: not the van's.
+        Meaning::Kind(said) => {
+            let fits = |who: &Actor| kind(*who).is_none_or(|known| same_kind(known, said));
+            let own = || kind(SUBJECT).is_some_and(|known| same_kind(known, said)).then_some(SUBJECT);
+            reading.contacts.partner.filter(fits).or_else(own)
+        }
+        _ => None,
+    }
+}
+
+/// A name that ends right before a token: "the van" before "'s" or "at".
+fn named_before(reading: &Reading<'_>, first: usize, end: usize) -> Option<Meaning> {
+    let lexicon = crate::lexicon::Lexicon::get();
+    (first.max(end.saturating_sub(NAME))..end).find_map(|at| {
+        let named = lexicon.longest(&reading.story.tokens, at, |meaning| {
+            matches!(meaning, Meaning::Subject | Meaning::Company | Meaning::Kind(_))
+        })?;
+        (at + named.length == end).then_some(named.meaning)
+    })
+}
+
+/// A name has so many words at most. [tokens]
+const NAME: usize = 3;
+
+/// "the two collided, the AV at 19 mph by then": whose it is by a noun right before it, behind a comma.
+fn owner_at(reading: &Reading<'_>, first: usize, at: usize) -> Option<Actor> {
+    let word = |at: usize| reading.story.tokens[at].text.as_str();
+    let about = |at: &usize| matches!(word(*at), "about" | "approximately" | "around" | "roughly" | "only");
+    let to = (first..at).rev().find(|at| !about(at)).filter(|to| word(*to) == "at")?;
+    let begins = (first.max(to.saturating_sub(NAME + 2))..to).rev().find(|at| word(*at) == ",")?;
+    owner_named(reading, named_before(reading, begins + 1, to)?)
+}
+
+/// "the speed of the van was 5 mph", "an impact from the van at 1 mph", "its speed when struck": whose speed it is by a noun, and whether that
+/// names the contact.
 fn owner_of_speed(reading: &Reading<'_>, first: usize, at: usize) -> Option<(Actor, bool)> {
     let tokens = &reading.story.tokens;
     let word = |at: usize| tokens[at].text.as_str();
     let from = first.max(at.saturating_sub(OWNER_WITHIN));
-    let ends = |at: &usize| matches!(word(*at), "," | "and" | "while" | "when" | "as") || word(*at).ends_with("mph");
+    let struck = |at: usize| word(at) == "when" && matches!(word(at + 1), "struck" | "hit");
+    let ends = |at: &usize| {
+        matches!(word(*at), "," | "and" | "while" | "when" | "as") && !struck(*at) || word(*at).ends_with("mph")
+    };
+    let owned = |at: usize| at > first && word(at) == "speed" && word(at - 1) == "'s" && struck(at + 1);
     let noun = (from..at).rev().take_while(|at| !ends(at)).find(|at| {
         let speed = word(*at) == "speed" && word(at + 1) == "of";
         let impact = matches!(word(*at), "impact" | "contact" | "collision") && word(at + 1) == "from";
-        speed || impact
+        speed || impact || owned(*at)
     })?;
+    if owned(noun) {
+        return Some((owner_named(reading, named_before(reading, first, noun - 1)?)?, true));
+    }
     let article = usize::from(crate::chunk::is_determiner(word(noun + 2)));
     let lexicon = crate::lexicon::Lexicon::get();
     let named = lexicon.longest(tokens, noun + 2 + article, |meaning| {
@@ -120,25 +168,34 @@ fn owner_of_speed(reading: &Reading<'_>, first: usize, at: usize) -> Option<(Act
     })?;
     // "the speed of the vehicle": of which one is not told.
     let behind = noun + 2 + article + named.length;
-    let numbered = || tokens.get(behind).is_some_and(|token| token.kind == TokenKind::Number && token.text != "1");
+    let numbered = tokens.get(behind).is_some_and(|token| token.kind == TokenKind::Number && token.text != "1");
     let owner = match named.meaning {
-        Meaning::Subject | Meaning::Company => Some(SUBJECT),
-        Meaning::Kind(Kind::Vehicle) if !numbered() => None,
-        Meaning::Adjective(Adjective::Other | Adjective::Another) => reading.contacts.partner,
-        // "the speed of the bus ahead", of whom the van struck: not the van's.
-        Meaning::Kind(said) => {
-            let fits = |who: &Actor| reading.story.world.actors[*who].kind.is_none_or(|known| same_kind(known, said));
-            reading.contacts.partner.filter(fits)
-        }
-        _ => None,
+        Meaning::Kind(Kind::Vehicle) if numbered => reading.contacts.partner,
+        meaning => owner_named(reading, meaning),
     }?;
+    let when_struck = (noun..at).any(struck);
     // "upon impact from the van the AV was traveling at 20 mph": the verb says whose.
     let within = |frame: &Frame| frame.first > noun && frame.first < at && frame.who.is_some_and(|who| who != owner);
-    (!reading.story.frames.iter().any(within)).then_some((owner, word(noun) != "speed"))
+    (when_struck || !reading.story.frames.iter().any(within)).then_some((owner, word(noun) != "speed" || when_struck))
 }
 
 /// Whose speed it is stands so near before the number. [tokens]
 const OWNER_WITHIN: usize = 14;
+
+/// The frame with which a speed is told: the last before it. Behind "struck the van, which was at rest, at 8 mph" it is not that of who rests.
+fn told_with<'a>(reading: &'a Reading<'_>, at: usize, mph: f64) -> Option<(usize, &'a Frame)> {
+    let behind_comma = at >= 2 && reading.story.tokens[at - 1].text == "at" && reading.story.tokens[at - 2].text == ",";
+    let all = || reading.story.frames.iter().enumerate().rev();
+    let here = |frame: &Frame| frame.first < at && !frame.aside;
+    let told = |frame: &Frame| here(frame) && frame.who.is_some();
+    let last = all().find(|(_, frame)| told(frame))?;
+    let rests = behind_comma && mph > 0.0 && last.1.act() == Some(Act::Hold);
+    let touches = |frame: &Frame| told(frame) && frame.is_contact() && frame.sentence == last.1.sentence;
+    // "The van and the AV collided, the AV at 19 mph": of both.
+    let both = all().find(|(_, frame)| here(frame)).filter(|(_, frame)| frame.who.is_none() && frame.is_contact());
+    let both = both.filter(|(_, frame)| owner_at(reading, reading.story.sentences[frame.sentence].first, at).is_some());
+    both.or_else(|| all().find(|(_, frame)| rests && touches(frame))).or(Some(last))
+}
 
 /// Speeds that the words tell of somebody.
 pub(super) fn speeds(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<Speed>> {
@@ -156,23 +213,22 @@ pub(super) fn speeds(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<Speed>> {
             .ok()
             .filter(|_| token.kind == TokenKind::Number && (unit == "mph" || unit == "miles" && an_hour()));
         let Some(mph) = joined.or(apart).filter(|mph| *mph < 200.0) else { continue };
-        let last_frame = reading
-            .story
-            .frames
-            .iter()
-            .enumerate()
-            .rev()
-            .find(|(_, frame)| frame.first < at && !frame.aside && frame.who.is_some());
-        let Some((number, frame)) = last_frame else { continue };
-        let sentence = reading.story.sentences[frame.sentence];
-        let owner = owner_of_speed(reading, sentence.first, at);
+        let Some((number, frame)) = told_with(reading, at, mph) else { continue };
+        let within = |sentence: &&Sentence| (sentence.first..sentence.end).contains(&at);
+        let Some(sentence) = reading.story.sentences.iter().find(within) else { continue };
+        let touches = |frame: &Frame| frame.is_contact() && (sentence.first..at).contains(&frame.first);
+        let named = owner_at(reading, sentence.first, at);
+        let named = named.map(|owner| (owner, reading.story.frames.iter().any(touches)));
+        let owner = owner_of_speed(reading, sentence.first, at).or(named);
         let impact = owner.is_some_and(|(_, impact)| impact)
             || at_impact(tokens, (sentence.first, sentence.end), at)
             || is_until_contact(reading, number, at)
             || is_of_last_contact(reading, frame.sentence);
         let in_time = impact || !reading.is_after(number);
         let who = owner.map(|(owner, _)| owner).or(frame.who);
-        if who != Some(actor) || !(sentence.first..sentence.end).contains(&at) || !in_time {
+        // "The speed of the AV when struck was 8 mph": told with no verb of its own.
+        let told_here = reading.story.sentences[frame.sentence].first == sentence.first;
+        if who != Some(actor) || !(told_here || owner.is_some_and(|(_, impact)| impact)) || !in_time {
             continue;
         }
         let near: Vec<&str> =

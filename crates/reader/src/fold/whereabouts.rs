@@ -35,6 +35,7 @@ pub(crate) fn place_of(reading: &Reading<'_>, actor: Actor) -> Option<Fact<Origi
         .or_else(|| before_its_turn(&clues))
         .or_else(|| faces_its_way(&clues))
         .or_else(|| on_oncoming_side(&clues))
+        .or_else(|| stands_in_oncoming_lane(&clues))
         .or_else(|| at_side_of_road(&clues))
         .or_else(|| told_afterwards(&clues))
         .or_else(|| stops_in_its_lane(&clues))
@@ -208,6 +209,15 @@ fn on_oncoming_side(clues: &Clues<'_>) -> Option<Fact<Origin>> {
         let way = bound(&tokens[at].text)?;
         (own.eighths_to(way) == 4).then(|| reading.told(Origin::Opposite, at, at + 2))
     })
+}
+
+/// "A truck stopped in the adjacent oncoming lane": it came from there, where nothing tells that it went over.
+fn stands_in_oncoming_lane(clues: &Clues<'_>) -> Option<Fact<Origin>> {
+    let (reading, actor) = (clues.reading, clues.actor);
+    let (lane, first, end) = reading.story.world.actors[actor].lane?;
+    let acts = || reading.before(actor).filter_map(|(_, frame)| frame.act());
+    let stands = acts().next().is_some() && acts().all(|act| matches!(act, Act::Hold | Act::Stop));
+    (lane == LaneWord::Opposing && stands).then(|| reading.told(Origin::Opposite, first, end))
 }
 
 /// "a line of cars behind the truck": where the truck is.

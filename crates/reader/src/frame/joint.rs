@@ -106,6 +106,10 @@ impl Parser<'_> {
             (carry.progress, carry.negated) = (None, false);
         }
         if joint == Joint::And && matches!(next, Some(Chunk::Verb(..) | Chunk::Not | Chunk::Be)) {
+            // "braked shortly before the impact and steered to the right": no clause began there.
+            if carry.joint == Some(Joint::Before) && carry.frame.is_none() && self.is_behind_time(behind) {
+                (carry.joint, carry.stranger) = (None, false);
+            }
             // "did not slow down or stop" denies both.
             let or = behind.first().is_some_and(|next| next.first > 0 && self.tokens[next.first - 1].text == "or");
             carry.negated = or
@@ -141,6 +145,15 @@ impl Parser<'_> {
             // "while stopped", "before turning": of whom the clause is about, or of who is named next.
             carry.has_verb = carry.subject.is_some();
         }
+    }
+
+    /// "before the impact and", "prior to contact and": a time stands before that "and".
+    fn is_behind_time(&self, behind: &[Placed]) -> bool {
+        let and = behind.first().map_or(0, |placed| placed.first.saturating_sub(1));
+        let words: Vec<&str> =
+            self.tokens[and.saturating_sub(4)..and].iter().map(|token| token.text.as_str()).collect();
+        let time = matches!(words.last(), Some(&("impact" | "contact" | "collision" | "crash")));
+        time && words.iter().any(|word| matches!(*word, "before" | "prior"))
     }
 
     /// "moved forward and to the left": over, besides.

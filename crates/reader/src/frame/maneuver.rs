@@ -32,6 +32,7 @@ const WORDS: usize = 6;
 /// Rewords the manoeuvres of a narrative.
 pub(super) fn apply(tokens: &mut [Token]) {
     for at in 0..tokens.len().saturating_sub(2) {
+        answer_with(tokens, at);
         if let Some((from, is_clause)) = midway(tokens, at) {
             let stopped = stops_within(tokens, at);
             let told = |named: &Named| named.does != Does::Stop && !(stopped && named.does == Does::Turn);
@@ -55,6 +56,53 @@ pub(super) fn apply(tokens: &mut [Token]) {
             reword(tokens, at, &named, form);
         }
     }
+}
+
+/// "reacted with hard braking and a shift to the right": it braked, and shifted to the right.
+fn answer_with(tokens: &mut [Token], at: usize) {
+    let word = |at: usize| tokens.get(at).map_or("", |token| token.text.as_str());
+    let answers = matches!(word(at), "reacted" | "responded" | "answered") && matches!(word(at + 1), "with" | "by");
+    let Some((verb, end)) = answer(tokens, at + 2).filter(|_| answers) else { return };
+    let more = answer(tokens, end + 1).filter(|_| matches!(word(end), "and" | ","));
+    for (verb, first, end) in
+        [Some((verb, at, end)), more.map(|(verb, last)| (verb, end + 1, last))].into_iter().flatten()
+    {
+        tokens[first..end].iter_mut().for_each(|token| "completely".clone_into(&mut token.text));
+        verb.clone_into(&mut tokens[first].text);
+    }
+}
+
+/// What a noun for an answer says as a verb, and the token behind it: "a hard brake", "deceleration", "a slight nudge".
+fn answer(tokens: &[Token], from: usize) -> Option<(&'static str, usize)> {
+    const HOW: [&str; 14] = [
+        "hard",
+        "harsh",
+        "heavy",
+        "strong",
+        "firm",
+        "sudden",
+        "sharp",
+        "quick",
+        "immediate",
+        "emergency",
+        "light",
+        "slight",
+        "small",
+        "brief",
+    ];
+    let word = |at: usize| tokens.get(at).map_or("", |token| token.text.as_str());
+    let first = from + usize::from(matches!(word(from), "a" | "an" | "its"));
+    let noun = (first..first + 3).find(|at| !HOW.contains(&word(*at)))?;
+    let verb = match word(noun) {
+        "braking" | "brake" | "brakes" | "deceleration" => "braked",
+        "shift" | "nudge" => "shifted",
+        "swerve" => "swerved",
+        "move" => "moved",
+        "steering" => "steered",
+        _ => return None,
+    };
+    let long = matches!(word(noun + 1), "maneuver" | "application" | "input" | "action");
+    Some((verb, noun + 1 + usize::from(long)))
 }
 
 /// "during", "still in", "midway through", "in the middle of", "engaged in": the token behind it, and whether a clause begins with it.

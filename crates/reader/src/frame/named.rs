@@ -60,7 +60,7 @@ impl Parser<'_> {
             return true;
         }
         self.world.main = carry.main.as_ref().map(|main| main.actor);
-        self.world.apart = self.stands_farther(placed.end);
+        self.world.apart = self.stands_farther(placed.end) || self.goes_on_foot(noun, placed.end);
         self.world.before = carry.relation == Some(Relation::Behind);
         let actor = self.world.resolve(noun, tokens, hint);
         (self.world.apart, self.world.before) = (false, false);
@@ -158,6 +158,17 @@ impl Parser<'_> {
                 && matches!(row[1], "vehicles" | "cars")
                 && matches!(row[2], "behind" | "back" | "ahead")
         })
+    }
+
+    /// "A woman pushing a stroller", "a man walking a dog": not who rides, and was announced.
+    fn goes_on_foot(&self, noun: &Noun, end: usize) -> bool {
+        let next = |at: usize| self.tokens.get(end + at).map_or("", |token| token.text.as_str());
+        let on_foot = matches!(next(0), "pushing" | "walking" | "jogging" | "strolling");
+        let rides = |kind: Kind| matches!(kind, Kind::Skateboarder | Kind::ScooterRider | Kind::Wheelchair);
+        let rider = self.world.actors.iter().any(|known| known.announced && known.kind.is_some_and(rides));
+        // "A man walking his bicycle", "pushing her scooter".
+        let own = matches!(next(1), "his" | "her" | "their" | "its");
+        noun.kind == Some(Kind::Pedestrian) && on_foot && rider && !own
     }
 
     /// "The AV was the lead vehicle stopped at a light", "waited as the first car in line": what it is, and nobody else.

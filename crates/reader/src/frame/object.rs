@@ -45,7 +45,7 @@ impl Parser<'_> {
             }
             "for" if self.waits_for(self.standing_before(frame), mention.actor) => {
                 let frame = self.standing_before(frame);
-                if !self.comes_across(mention.actor, placed.end) && !self.waits_at_line(frame, placed) {
+                if !self.comes_across(mention.actor, placed.end) && !self.at_yield_line(frame, placed.first) {
                     self.note(mention.actor, Relation::Ahead);
                 }
                 self.frames[frame].object.get_or_insert(mention.actor);
@@ -285,13 +285,10 @@ impl Parser<'_> {
         opposite || other_way || behind
     }
 
-    /// "waited at the yield line for a bus": that goes by ahead of it, and is not in its lane.
-    fn waits_at_line(&self, frame: usize, placed: &Placed) -> bool {
-        let words = self.tokens.get(self.frames[frame].first..placed.first).unwrap_or_default();
-        words.windows(2).any(|pair| {
-            let (one, other) = (pair[0].text.as_str(), pair[1].text.as_str());
-            matches!((one, other), ("yield" | "stop" | "limit", "line") | ("yield", "sign"))
-        })
+    /// "had waited at the yield line for a van": that comes across its way.
+    fn at_yield_line(&self, frame: usize, end: usize) -> bool {
+        let words = &self.tokens[self.frames[frame].first.min(end)..end];
+        words.windows(2).any(|pair| pair[0].text == "yield" && matches!(pair[1].text.as_str(), "line" | "sign"))
     }
 
     /// "a motorcycle came at it".

@@ -71,9 +71,9 @@ fn join_most(tokens: &mut Vec<Token>) {
     }
 }
 
-/// "The system issued a brake command", "the ADS came to a stop": the vehicle that it drives.
+/// "The system issued a brake command", "our system reduced speed", "the automated driving system braked": the vehicle that it drives.
 fn name_system(tokens: &mut [Token]) {
-    const DOES: [&str; 16] = [
+    const DOES: [&str; 22] = [
         "issued",
         "applied",
         "commanded",
@@ -90,15 +90,44 @@ fn name_system(tokens: &mut [Token]) {
         "began",
         "started",
         "requested",
+        "reduced",
+        "lowered",
+        "decreased",
+        "shifted",
+        "reacted",
+        "responded",
     ];
     for at in 1..tokens.len().saturating_sub(2) {
-        let named = matches!(tokens[at].text.as_str(), "system" | "ads") && tokens[at - 1].text == "the";
+        let Some(first) = names_system(tokens, at) else { continue };
         let adverb = usize::from(tokens[at + 1].text.ends_with("ly"));
         let verb = at + 1 + adverb;
-        if named && (DOES.contains(&tokens[verb].text.as_str()) || drives(tokens, verb)) {
-            "av".clone_into(&mut tokens[at].text);
+        if tokens.get(verb).is_some_and(|verb| DOES.contains(&verb.text.as_str())) || drives(tokens, verb) {
+            tokens[first..=at].iter_mut().for_each(|token| "completely".clone_into(&mut token.text));
+            "av".clone_into(&mut tokens[first].text);
         }
     }
+}
+
+/// Where the name of a system begins that ends here, behind its article: "the automated driving system", "our software", "the ADS"; not "the
+/// van's braking system".
+fn names_system(tokens: &[Token], at: usize) -> Option<usize> {
+    const OF: [&str; 10] = [
+        "automated",
+        "autonomous",
+        "autonomy",
+        "self",
+        "driving",
+        "automation",
+        "drive",
+        "control",
+        "assistance",
+        "ads",
+    ];
+    if !matches!(tokens[at].text.as_str(), "system" | "ads" | "software" | "autonomy" | "autopilot") {
+        return None;
+    }
+    let article = (at.saturating_sub(4)..at).rev().find(|before| !OF.contains(&tokens[*before].text.as_str()))?;
+    matches!(tokens[article].text.as_str(), "the" | "our").then_some(article + 1)
 }
 
 /// Whether a verb here is one of what drives and stands: "came to a stop", "was turning left". "Turned off", "was running" are not.

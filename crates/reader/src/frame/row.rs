@@ -47,6 +47,9 @@ impl<'a> Spoken<'a> {
     }
 }
 
+/// A crash is named so near before what it did to somebody: "the impact between those two vehicles rotated". [tokens]
+const IMPACT_WITHIN: usize = 7;
+
 impl Parser<'_> {
     /// Whether words that nobody knows, written large or blacked out, stand before and behind.
     pub(super) fn names_on_both_sides(&self, all: &[Placed], at: usize) -> bool {
@@ -229,7 +232,16 @@ impl Parser<'_> {
         object
             && other
             && (behind().any(into) && part
+                || self.is_whirled_by_impact(verb)
                 || behind().any(ahead) && carry.subject.as_ref().is_none_or(|subject| subject.person.is_none()))
+    }
+
+    /// "The impact rotated the van", "the crash spun it": what does so is nobody who drives.
+    fn is_whirled_by_impact(&self, verb: &Spoken<'_>) -> bool {
+        let whirls = ["spun", "spin", "rotat", "whirl"].iter().any(|stem| verb.word(self).starts_with(stem));
+        let before = self.tokens[..verb.placed().first].iter().rev().take(IMPACT_WITHIN);
+        let mut clause = before.map(|token| token.text.as_str()).take_while(|word| !matches!(*word, "." | "," | "and"));
+        whirls && clause.any(|word| matches!(word, "impact" | "collision" | "crash"))
     }
 
     /// Whether a verb that nobody knows stands between a part of one and a part of another: "its fender raked the side of the van".

@@ -97,7 +97,13 @@ impl Parser<'_> {
         let inner = carry.joint.is_some_and(|joint| matches!(joint, Joint::Because))
             && !carry.after_comma
             && carry.pending.iter().all(|number| self.frames[*number].clause < carry.clause);
-        let ready = if inner { Vec::new() } else { std::mem::take(&mut carry.pending) };
+        // "Letting a car go first, the AV drove on": the AV lets it.
+        let lets = !carry.after_comma
+            && carry.pending.last().is_some_and(|number| {
+                let waiting = &self.frames[*number];
+                waiting.sense == Sense::Yield && self.tokens[waiting.first].text == "letting"
+            });
+        let ready = if inner || lets { Vec::new() } else { std::mem::take(&mut carry.pending) };
         for pending in ready {
             let waiting = &self.frames[pending];
             // "Stopped behind it, a van set off": nobody stands behind itself.

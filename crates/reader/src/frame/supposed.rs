@@ -57,8 +57,11 @@ fn behind_fear(before: &[Token]) -> bool {
     feared || word(1).starts_with("avoid") && !in_vain
 }
 
-/// "stopped so that a van could turn": what it made room for.
+/// "stopped so that a van could turn": what it made room for. "Hemmed in, so that it could only slow": so it did.
 fn behind_purpose(before: &[Token]) -> bool {
+    if matches!(before, [.., could, only] if could.text == "could" && only.text == "only") {
+        return false;
+    }
     let so = before.iter().rposition(|token| matches!(token.text.as_str(), "so" | "order"));
     let Some(clause) = so.map(|at| &before[at..]) else { return false };
     let modal = |token: &Token| matches!(token.text.as_str(), "could" | "might" | "would" | "can");

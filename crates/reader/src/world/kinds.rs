@@ -9,6 +9,11 @@ pub(super) fn is_big_truck(kind: Kind) -> bool {
     matches!(kind, Kind::HeavyTruck | Kind::SemiTrailerTruck)
 }
 
+/// Whether it is called a truck: "the truck" is a box truck rather than the bus that was named since.
+pub(super) fn is_truck(kind: Kind) -> bool {
+    kind.group() == KindGroup::Truck && !matches!(kind, Kind::Bus | Kind::SchoolBus | Kind::Tram)
+}
+
 /// Whether nobody calls it a passenger vehicle.
 pub fn is_no_passenger_vehicle(kind: Kind) -> bool {
     matches!(kind, Kind::Bus | Kind::SchoolBus | Kind::Tram | Kind::SemiTrailerTruck | Kind::GarbageTruck)

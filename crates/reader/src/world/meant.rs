@@ -2,7 +2,9 @@
 //!
 //! A new rule goes into [`RULES`], before all that would say something else of its noun.
 
-use super::kinds::{acts, contradicts, introduces, is_big_truck, is_no_passenger_vehicle, relation_of, same_kind};
+use super::kinds::{
+    acts, contradicts, introduces, is_big_truck, is_no_passenger_vehicle, is_truck, relation_of, same_kind,
+};
 use super::{Actor, Known, SUBJECT, World};
 use crate::chunk::{Article, Noun};
 use crate::lexicon::{Adjective, Occupant, Relation};
@@ -349,6 +351,9 @@ impl World {
             .latest(|known| called(known) && fits(known))
             .or_else(|| self.subject_of_two(sought))
             .or_else(|| self.latest(|known| known.kind == Some(kind) && as_many(known) && !known.is_bystander()))
+            .or_else(|| {
+                self.latest(|known| kind == Kind::HeavyTruck && as_many(known) && known.kind.is_some_and(is_truck))
+            })
             .or_else(|| self.latest(as_many))
             .or_else(|| self.latest(|known| one_of && known.several && known.kind == Some(kind) && fits(known)));
         if let Some(meant) = self.slip_of_the_pen(sought, found) {

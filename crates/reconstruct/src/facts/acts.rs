@@ -2,7 +2,7 @@
 
 use crate::facts::movement::LEFT_LINE_M;
 use crate::told::doing::{CHANGES_MPS, Doing, Least, least};
-use crate::usual::STANDS_MPS;
+use crate::usual::{LANE_M, STANDS_MPS};
 use recrash_model::account::{Act, LeftRight};
 use recrash_model::geometry::Vec2;
 use recrash_model::math;
@@ -40,6 +40,9 @@ const BEGUN_PASS_M: f64 = 0.5;
 /// than this. [steps]
 const BEFORE_OTHER: usize = 5;
 const JUST_BEFORE_OTHER: usize = 2;
+
+/// Who is told to have stayed in its lane may be over its edge by so much. [m]
+const OVER_EDGE_M: f64 = 0.3;
 
 /// What begins little by little is found by so much before it is seen. [steps]
 const FOUND_EARLY: usize = 7;
@@ -81,7 +84,8 @@ impl Did<'_> {
             beyond_m: 0.5 * (other.track.length_m - self.track.length_m),
         });
         let until = until(self.track);
-        Way { states: &self.track.states[..=until], other: by, entered: self.entered.filter(|at| *at <= until) }
+        let room_m = 0.5 * (LANE_M - self.track.width_m) + OVER_EDGE_M;
+        Way { states: &self.track.states[..=until], other: by, entered: self.entered.filter(|at| *at <= until), room_m }
     }
 }
 
@@ -107,11 +111,13 @@ pub(super) fn check(one: &Did<'_>, other: Option<&Did<'_>>, time_s: f64) -> (Che
     }
 }
 
-/// The states of somebody until the contact, those of the other one, and when its front was in the junction.
+/// The states of somebody until the contact, those of the other one, when its front was in the junction, and the room in its lane.
 struct Way<'a> {
     states: &'a [ActorState],
     other: Option<Other<'a>>,
     entered: Option<usize>,
+    /// How far it may go aside that stays in its lane. [m]
+    room_m: f64,
 }
 
 /// The other one's states, half of the length of both, and how far the middle of who has passed it is ahead of its middle. [m]
@@ -253,6 +259,7 @@ impl Way<'_> {
                 (stood..self.last()).find(|at| self.is_still(*at) && !self.is_still(at + 1))
             }
             Least::Back => backs(),
+            Least::Aside(_) if doing.within_lane && aside(from, self.last()) > self.room_m => None,
             Least::Aside(by) => self.comes_to(from, share * by, aside),
             Least::Turn(by) => self.comes_to(from, share * by, turned),
             Least::By if doing.begun => self.comes_to(from, BEGUN_PASS_M, aside),

@@ -80,6 +80,10 @@ impl Near {
         let first = match self.first {
             First::Untold => true,
             First::Came => state(0).position().distance(state(until).position()) > DROVE_M,
+            First::Gone => {
+                let sets_off = |step: &usize| ego.states[*step].velocity().length() > STANDS_MPS;
+                seen((0..until).find(sets_off).unwrap_or(until)).0 < 0.0
+            }
             First::Left => seen(until).1.abs() > 0.5 * LANE_M || seen(until).0 < -half_m,
         };
         // Who waits opposite, slows there, or goes aside, has not long gone by when the two touch.

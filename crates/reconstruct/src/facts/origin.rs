@@ -7,8 +7,9 @@ use crate::usual::{LANE_M, STANDS_MPS};
 use recrash_model::account::{ContactState, CrashType, LeftRight, Origin};
 use recrash_model::geometry::Vec2;
 use recrash_model::math;
-use recrash_model::rollout::ActorTrack;
+use recrash_model::rollout::{ActorState, ActorTrack};
 use recrash_model::template::Movement;
+use recrash_roads::{RoadPart, Scenario};
 
 /// Who is less aside than this is beside nobody. [m]
 const ASIDE_M: f64 = 1.0;
@@ -30,6 +31,7 @@ const TURNED_OFF_M: f64 = 3.0;
 
 pub(super) fn origin_words(told: &Told) -> String {
     let more = match (told.comes_over, told.comes_round, told.comes_across()) {
+        _ if told.drives_abreast() => ", side by side",
         (true, ..) => ", on its own side",
         (_, true, _) => ", behind",
         (_, _, true) => ", across",
@@ -68,6 +70,8 @@ pub(super) fn origin(told: &Told, ego: &ActorTrack, other: &ActorTrack, time_s: 
     } else {
         facing
     };
+    let to_met = math::wrap_angle(other.heading - met.heading).to_degrees();
+    let crosswise = |angle: f64| (30.0..150.0).contains(&angle.abs());
     let on = |side: LeftRight, angle: f64| if side == LeftRight::Left { angle < 0.0 } else { angle > 0.0 };
     let beside = |side: LeftRight| if side == LeftRight::Left { left > ASIDE_M } else { left < -ASIDE_M };
     let same_way = match told.comes_across() {
@@ -88,10 +92,11 @@ pub(super) fn origin(told: &Told, ego: &ActorTrack, other: &ActorTrack, time_s: 
         }
         Origin::Opposite => facing.abs() > 120.0 && (!told.comes_over || left > OVER_M),
         Origin::Beside { side } => (facing.abs() < 60.0 || told.comes_across()) && same_way && beside(side),
-        Origin::Cross { side } => (30.0..150.0).contains(&moves.abs()) && on(side, moves),
+        // Over the road that the ego turns into it comes from a side of that.
+        Origin::Cross { side } if told.turns_over_walk().is_some() && on(side, to_met) => crosswise(to_met),
+        Origin::Cross { side } => crosswise(moves) && on(side, moves),
         Origin::Stall { side } | Origin::Driveway { side } | Origin::Parked { side } | Origin::Sidewalk { side } => {
-            let crosswise = (30.0..150.0).contains(&facing.abs());
-            let out = crosswise || !matches!(told.origin, Origin::Stall { .. } | Origin::Driveway { .. });
+            let out = crosswise(facing) || !matches!(told.origin, Origin::Stall { .. } | Origin::Driveway { .. });
             let from_there = !(told.stood_beside() || told.backs_out())
                 || stands_then
                     && left.abs() > OVER_M
@@ -101,10 +106,40 @@ pub(super) fn origin(told: &Told, ego: &ActorTrack, other: &ActorTrack, time_s: 
         }
         Origin::Above => false,
     };
+    let shown = shown && (!told.drives_abreast() || is_abreast(ego_track, other_track, time_s));
     let along = if ahead < 0.0 { "behind" } else { "ahead" };
     let aside = if left < 0.0 { "to the right" } else { "to the left" };
     let seen = format!("{:.0} m {along}, {:.0} m {aside}, facing {facing:.0} degrees", ahead.abs(), left.abs());
     (shown, seen)
+}
+
+/// Who drives side by side does so this long before the contact, and is no farther ahead or behind than their lengths and this. [s, m]
+const ABREAST_S: f64 = 3.0;
+const ABREAST_M: f64 = 1.0;
+
+/// Whether two drive side by side before they touch.
+fn is_abreast(ego: &ActorTrack, other: &ActorTrack, time_s: f64) -> bool {
+    let step = (((time_s - ABREAST_S).max(0.0) * 10.0) as usize).min(ego.states.len() - 1);
+    let (own, state) = (&ego.states[step], &other.states[step]);
+    let along_m = Vec2::from_heading(own.heading).dot(state.position() - own.position()).abs();
+    along_m < 0.5 * (ego.length_m + other.length_m) + ABREAST_M
+}
+
+/// Cosine of the angle to a lane at which somebody goes along it.
+const ALONG: f64 = 0.7;
+
+/// Whether somebody who comes over a crosswalk came along a lane for vehicles.
+pub(super) fn comes_by_lane(told: &Told, scenario: &Scenario, other: &ActorTrack, time_s: f64) -> bool {
+    let network = scenario.network();
+    let until = ((time_s * 10.0) as usize).min(other.states.len() - 1);
+    let along = |state: &ActorState| {
+        let lane = network.lane_at(state.position(), state.heading).map(|id| network.lane(id));
+        lane.is_some_and(|lane| {
+            let off = math::wrap_angle(lane.heading(lane.local(state.position()).0) - state.heading);
+            network.road(lane.road).part == RoadPart::Open && math::cos(off).abs() > ALONG
+        })
+    };
+    told.crosses_at_walk() && other.states[..=until].iter().step_by(10).any(along)
 }
 
 /// Whether somebody overlaps the ego across its way at a step.

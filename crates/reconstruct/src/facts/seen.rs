@@ -196,8 +196,7 @@ impl<'a> Seen<'a> {
                 Role::Abreast => self.drives_beside(extra, track),
                 Role::Kerb => self.is_parked(track) && self.is_on_side(extra, track),
                 Role::Obstacle => self.is_passed(extra, track),
-                Role::Passed if extra.in_line => self.partner_leaves(extra, track),
-                Role::Passed => self.partner_passes(track),
+                Role::Passed => self.partner_passes(extra, track),
                 Role::Screen => self.hides(track),
                 Role::Merger => self.merges(extra, track),
                 Role::Blocker => self.blocks(track, true),
@@ -397,18 +396,20 @@ impl<'a> Seen<'a> {
         backs && side && comes && (0.0..AHEAD_M + self.stopping_m(self.until) + PARKED_M).contains(&ahead_m)
     }
 
-    /// Whether the partner goes round somebody who stands in the line on which it came.
-    fn partner_passes(&self, track: &ActorTrack) -> bool {
+    /// Whether the partner goes round somebody who stands in the line on which it came, or is slower there.
+    fn partner_passes(&self, extra: &Extra, track: &ActorTrack) -> bool {
         let Some(partner) = self.rollout.actors.iter().find(|track| track.id == "cp") else { return false };
         let came = partner.states[0].pose();
         let along = Vec2::from_heading(came.heading);
         let aside = |of: Vec2| along.cross(of - came.position);
         let met = partner.states[self.until.min(partner.states.len() - 1)].position();
-        let at = track.states[0].position();
+        let at = track.states[if extra.slow { self.until.min(track.states.len() - 1) } else { 0 }].position();
         let beside = (0..=self.until).any(|step| (aside(partner.states[step].position()) - aside(at)).abs() > 0.8);
         let in_line = aside(at).abs() < 0.5 * LANE_M && beside;
         let by = aside(at).abs() < 1.2 * LANE_M && along.dot(met - at) > 0.0;
-        self.stays(track) && (in_line || by) && (at - met).length() < PARKED_M
+        let slower = Self::mps(track, self.until) + SLOWED_MPS < Self::mps(partner, self.until);
+        let pace = if extra.slow { !self.stays(track) && slower } else { self.stays(track) };
+        pace && (in_line || by) && (at - met).length() < PARKED_M
     }
 
     /// Whether somebody stands all the time, and between the ego and the partner before they touch.
@@ -422,22 +423,6 @@ impl<'a> Seen<'a> {
             outline.overlaps(&OrientedBox::new(middle, way.length(), SIGHT_M))
         };
         self.stays(track) && (0..self.until).any(hidden)
-    }
-
-    /// Whether somebody is ahead of the partner in the line on which that came, until it has left that or touches the ego; it stands, or is slower.
-    fn partner_leaves(&self, extra: &Extra, track: &ActorTrack) -> bool {
-        let Some(partner) = self.rollout.actors.iter().find(|track| track.id == "cp") else { return false };
-        let came = partner.states[0].pose();
-        let along = Vec2::from_heading(came.heading);
-        let at = |of: &ActorTrack, step: usize| of.states[step.min(of.states.len() - 1)].position() - came.position;
-        let in_line = along.cross(at(track, 0)).abs() < 0.5 * LANE_M;
-        let aside = |step: &usize| along.cross(at(partner, *step)).abs() > 0.5 * LANE_M;
-        let left = (0..=self.until).find(aside).unwrap_or(self.until);
-        let ahead = along.dot(at(track, left) - at(partner, left)) > 0.0;
-        let near = (at(track, self.until) - at(partner, self.until)).length() < PARKED_M;
-        let slower = (0..=self.until).all(|step| Self::mps(track, step) < Self::mps(partner, 0) - SLOWED_MPS);
-        let drives = if extra.slower { slower } else { self.stays(track) };
-        in_line && ahead && near && drives
     }
 
     /// Whether somebody was beside the ego's lane, on the told side, and is in it ahead of the ego at the contact.

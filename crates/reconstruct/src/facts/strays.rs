@@ -45,7 +45,8 @@ pub(crate) fn strays(told: &Told, scenario: &Scenario, rollout: &Rollout) -> boo
         return true;
     }
     // Every second.
-    let beside = track.states[..=until].iter().step_by(10).any(|state| !scenario.network().on_road(state.position()));
+    let off = |state: &ActorState| !told.crosses_at_walk() && !scenario.network().on_road(state.position());
+    let beside = track.states[..=until].iter().step_by(10).any(off);
     let oncoming = |state: &ActorState| movement::is_against(scenario, state) == Some(true);
     if told.keeps_direction() && track.states[..=until].iter().step_by(10).filter(|state| oncoming(state)).count() > 1 {
         return true;

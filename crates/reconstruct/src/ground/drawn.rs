@@ -12,6 +12,7 @@ use crate::usual::LANE_M;
 use recrash_model::account::{LeftRight, Origin, PlaceKind};
 use recrash_model::kinds::PartnerKind;
 use recrash_model::scenario::{GraphMap, RoadStart, Strip, StripKind};
+use recrash_model::template::Movement;
 
 /// The road for an account.
 pub(crate) fn ground_for(told: &Told) -> Ground {
@@ -95,8 +96,12 @@ fn beside_edge(told: &Told, side: LeftRight, lot: bool, oncoming: usize) -> (Vec
 }
 
 impl Told {
-    /// Whether the partner crosses a street on foot, or as an animal, where no road crosses it.
+    /// Whether the partner crosses a street on foot, as an animal, or as a rider that does what walkers do, where no road crosses it.
     fn crosses_street(&self) -> bool {
-        matches!(self.cp.kind, PartnerKind::Pedestrian | PartnerKind::Animal) && self.place == PlaceKind::Street
+        let rides = matches!(self.cp.kind, PartnerKind::Cyclist | PartnerKind::OtherNonMotorist);
+        let crosses = self.cp.movement == Some(Movement::NmCrossing);
+        let walk = rides && (crosses || self.layout.crosswalk || self.layout.beside_crosswalk);
+        let on_foot = matches!(self.cp.kind, PartnerKind::Pedestrian | PartnerKind::Animal);
+        (on_foot || walk) && self.place == PlaceKind::Street
     }
 }

@@ -8,7 +8,7 @@ use crate::told::others::Role;
 use crate::told::side::{Turning, size_of};
 use crate::told::{queue, sizes};
 use crate::usual::{LANE_M, LEAD_GAP_M, ROOM_M};
-use recrash_model::account::{ContactState, LeftRight, Origin};
+use recrash_model::account::{ContactState, LeftRight, Origin, StandReason};
 use recrash_model::kinds::PartnerKind;
 use recrash_model::scenario::{GraphMap, JunctionSpec, RoadStart, StripKind};
 use recrash_model::template::Movement;
@@ -151,7 +151,9 @@ pub(super) fn junction(told: &Told, crossing: bool) -> Ground {
     let queue_m = queue_m(told);
     let at_line: Vec<f64> = match told.sv.state {
         _ if told.enters() => Vec::new(),
-        ContactState::Stopped if told.sv.control.is_some() && told.sv.turning == Turning::No => match queue_m {
+        ContactState::Stopped if told.stops_at_line() => match queue_m {
+            // At the line, before the crosswalk.
+            None if told.crosses_at_walk() => vec![-0.5 * size_of(&told.sv).0 - AT_LINE_M, -5.0, -8.0],
             Some(queue_m) => vec![-queue_m, -queue_m - 2.0],
             None => vec![-5.0, -8.0],
         },
@@ -214,11 +216,18 @@ pub(super) fn junction(told: &Told, crossing: bool) -> Ground {
     let beside = if crosses { usual.to_vec() } else { beside };
     let across = Across { lanes, lane, oncoming: if one_way || one_sided { 0 } else { lanes }, beside };
     let ground = with_way(map, vec!["own-".to_owned(), exit.to_owned()], across, places, true);
+    let ground = if at_line.is_empty() { ground.at_walk(told) } else { ground };
     let ground = if at_kerb { ground.at_kerb() } else { ground }.over_line(told);
     if told.sv.turned { ground.after_turn() } else { ground }
 }
 
 impl Told {
+    /// Whether an ego that stands, and does not turn, stands before the junction: at a signal or a sign, or for somebody who walks across.
+    fn stops_at_line(&self) -> bool {
+        let walks = self.reasons.contains(&StandReason::Pedestrian) && has(self, Role::Walker);
+        (self.sv.control.is_some() || walks) && self.sv.turning == Turning::No
+    }
+
     /// Whether the partner runs into the rear of an ego that has begun its turn, and is told to make the same.
     fn turns_as_ego(&self) -> bool {
         let same = match self.sv.turning {

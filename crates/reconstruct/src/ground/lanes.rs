@@ -4,9 +4,9 @@ use crate::told::crash::Told;
 use crate::told::layout::strip_of;
 use crate::told::near::{Does, Near};
 use crate::told::others::{Extra, Role};
-use crate::told::side::Turning;
+use crate::told::side::{Turning, size_of};
 use crate::told::zones::side_of;
-use crate::usual::LANE_M;
+use crate::usual::{LANE_M, NARROW_M};
 use recrash_model::account::{ContactState, KindGroup, LaneLine, LaneWord, LeftRight, Origin};
 use recrash_model::template::Movement;
 use recrash_model::zones::ContactZone;
@@ -127,8 +127,6 @@ fn passes_right(told: &Told) -> bool {
     let in_lane = told.cp.lane.and_then(strip_of).is_none();
     // Who stands beside the lanes does so beside the outermost.
     let in_lane = in_lane && !told.stands_beside(false) && told.thing.is_none();
-    // Nor is a lane there where somebody passes by the kerb.
-    let in_lane = in_lane && (!told.layout.by_kerb || told.wanted.iter().any(|extra| extra.between));
     let touched = |zone: &ContactZone| matches!(zone, ContactZone::Right | ContactZone::FrontRight);
     let moves = told.cp.state == ContactState::Moving;
     let passes = told.cp.movement == Some(Movement::Passing) && side_of(&told.sv.zones) == Some(-1.0)
@@ -136,10 +134,12 @@ fn passes_right(told: &Told) -> bool {
     let goes = matches!(told.cp.movement, Some(Movement::ChangingLanes | Movement::Merging | Movement::Passing));
     let goes = goes && moves && told.cp.aside == Some(LeftRight::Right) && !told.is_at_kerb();
     let by = moves && told.sv.zones.iter().any(touched) || passes || goes;
-    // Who comes across on foot needs no lane there.
-    let drives = !told.comes_across();
+    // Who comes across on foot needs no lane there, nor who is narrow, and comes by between the ego and the kerb.
+    let between = told.wanted.iter().any(|extra| extra.between);
+    let squeezes = told.layout.along_kerb && size_of(&told.cp).1 < NARROW_M && !between;
+    let drives = !told.comes_across() && !squeezes;
     in_lane && drives && matches!(told.origin, Origin::Beside { side: LeftRight::Right })
-        || in_lane && told.origin == Origin::Behind && by
+        || in_lane && !squeezes && told.origin == Origin::Behind && by
 }
 
 impl Told {

@@ -7,6 +7,7 @@ use crate::told::crash::Told;
 use crate::usual::LANE_M;
 use recrash_model::account::{LaneLine, LaneWord, LeftRight};
 use recrash_model::geometry::{Pose, Vec2};
+use recrash_model::math;
 use recrash_model::scenario::{GraphMap, MapSpec, StripKind};
 use recrash_roads::{LanePath, RoadNetwork};
 use std::rc::Rc;
@@ -15,6 +16,13 @@ use std::sync::Arc;
 /// Whose turn is over has turned by so much; places to try are so far behind that. [rad, m]
 const TURNED_RAD: f64 = 1.3;
 const AFTER_TURN_M: [f64; 4] = [0.0, 3.0, 6.0, 10.0];
+
+/// A crosswalk is as wide as these places along the ego's way; and who turns into the road that has it has turned by so much. [m, sine]
+const ALONG_WALK_M: [f64; 3] = [0.0, -0.8, 0.8];
+const TURNED_SINE: f64 = 0.5;
+
+/// Who stands at the right edge of its lane stands so far to the right of its middle. [m]
+const LANE_EDGE_M: f64 = 0.6;
 
 /// A road and the ego's way on it. Hundreds of ways of touching are tried on one: they share what is large.
 #[derive(Debug, Clone, PartialEq)]
@@ -91,6 +99,33 @@ impl Ground {
         Self { places: behind_m.iter().map(|behind_m| entry_m - 0.5 * ego_m + behind_m).collect(), ..self }
     }
 
+    /// The same, with the places first at which the touched part of the ego is on a crosswalk, in line with the sidewalk of the road that
+    /// crosses: the near one, the far one where it has come into the junction, or that of the road that it turns into.
+    pub(super) fn at_walk(mut self, told: &Told) -> Self {
+        let walk = self.beside.iter().position(|kind| *kind == StripKind::Sidewalk);
+        let Some(walk) = walk.filter(|_| self.junction && told.crosses_at_walk()) else { return self };
+        let strips_m: f64 = self.beside[..walk].iter().map(|kind| kind.usual_width_m()).sum();
+        let walk_m = self.lanes as f64 * LANE_M + strips_m + 0.5 * StripKind::Sidewalk.usual_width_m();
+        let part_m = told.touched_ahead_m();
+        let touched_m = match told.turns_over_walk() {
+            Some(_) => {
+                let centre_y_m = self.centre_y_m();
+                let aside_m = |s_m: &f64| {
+                    let pose = self.sv_pose(*s_m);
+                    (pose.position.y + part_m * math::sin(pose.heading) - centre_y_m).abs()
+                };
+                let turned = |s_m: &f64| math::sin(self.sv_pose(*s_m).heading).abs() > TURNED_SINE;
+                let steps = (0..600).map(|step| APPROACH_M + 0.1 * f64::from(step));
+                steps.filter(turned).find(|s_m| aside_m(s_m) >= walk_m)
+            }
+            None if told.enters() => Some(APPROACH_M + corner_m(self.lanes) + walk_m - part_m),
+            None => Some(APPROACH_M + corner_m(self.lanes) - walk_m - part_m),
+        };
+        let places = touched_m.into_iter().flat_map(|touched_m| ALONG_WALK_M.map(|along_m| touched_m + along_m));
+        self.places = places.chain(self.places.iter().copied()).collect();
+        self
+    }
+
     /// The same, with the places first at which the ego's turn is over.
     pub(super) fn after_turn(mut self) -> Self {
         let turned = |s_m: &f64| self.sv_pose(*s_m).heading.abs() > TURNED_RAD;
@@ -115,7 +150,7 @@ impl Ground {
         Self { stands_m: self.kerbs_m[1], ..self }
     }
 
-    /// The same, with an ego that stands over a line of the road, where it is told to.
+    /// The same, with an ego that stands over a line of the road, or at the edge of its lane, where it is told to.
     pub(super) fn over_line(self, told: &Told) -> Self {
         let beside_m = 0.5 * LANE_M - INSIDE_M;
         let [left, right] = [self.lane > 0, usize::from(self.lane) + 1 < self.lanes];
@@ -126,6 +161,8 @@ impl Ground {
             Some((LaneLine::Centre, _)) if !left => -beside_m,
             Some((LaneLine::Lanes, Some(LeftRight::Left) | None)) if left => -beside_m,
             Some((LaneLine::Lanes, Some(LeftRight::Right) | None)) if right => beside_m,
+            // Where others are parked or drive on its right it is in its lane.
+            _ if told.sv.state.stands() && told.layout.sv.lane_edge && self.stands_m == 0.0 => LANE_EDGE_M,
             _ => return self,
         };
         Self { stands_m, ..self }

@@ -4,6 +4,7 @@ use crate::facts::near::NEAR_M;
 use crate::ground::pieces::corner_m;
 use crate::nearby::scene::{LOT_MPS, Scene};
 use crate::nearby::way::{BRAKES_MPS2, PASSES_BY_MPS, Way};
+use crate::others::stand::stands;
 use crate::usual::{LANE_M, STANDS_MPS};
 use recrash_model::account::{LeftRight, Origin};
 use recrash_model::geometry::{Pose, Vec2};
@@ -13,6 +14,9 @@ const COMES_SHARE: f64 = 0.7;
 
 /// What fell off somebody begins so far behind it. [m]
 const RIGHT_BEHIND_M: f64 = 0.7;
+
+/// Who goes by before the ego sets off does so this long before. [s]
+const GONE_BEFORE_S: [f64; 4] = [0.8, 2.3, 1.5, 3.5];
 
 /// Who makes room for somebody between it and the ego is so far over in its lane. [m]
 const FAR_OVER_M: f64 = 0.9;
@@ -33,6 +37,17 @@ impl<'a> Scene<'a> {
         let off = (self.ground.junction && from_m > s_m - NEAR_M)
             .then(|| Way::straight(self.against(from_m), usual_mps, 0.0));
         [12.0, 24.0, -10.0, -25.0].into_iter().map(at).chain(off).collect()
+    }
+
+    /// In a lane towards the ego: it goes by before that, which stood, sets off.
+    pub(super) fn gone_by(&self) -> Vec<Way> {
+        let [_, usual_mps] = self.speeds();
+        let (s_m, _) = self.at(0);
+        let off_s = stands(self.ego, self.until).first().map_or(self.contact_s, |(_, to)| 0.1 * *to as f64);
+        let lanes = if self.is_two_way() { 0..self.ground.oncoming.max(1) } else { 0..0 };
+        let ways = lanes.flat_map(|lane| GONE_BEFORE_S.map(|before_s| (lane, off_s - before_s)));
+        let ways = ways.filter(|(_, at_s)| *at_s > 0.0);
+        ways.map(|(lane, at_s)| Way::straight(self.against_in(lane, s_m), usual_mps, at_s)).collect()
     }
 
     /// The same in the other lanes towards the ego.

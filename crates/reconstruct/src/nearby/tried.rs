@@ -3,7 +3,7 @@
 use crate::nearby::aside::STANDS_AHEAD_M;
 use crate::nearby::scene::{DRIVES_MPS, RIDES_MPS, Scene};
 use crate::nearby::way::{SLOWS_BY_MPS, Way};
-use crate::told::near::{Does, Near};
+use crate::told::near::{Does, First, Near};
 use crate::told::others::{Extra, Role};
 use crate::told::sizes::size_of as size_of_kind;
 use crate::usual::{LANE_M, STANDS_MPS, WALKS_MPS};
@@ -65,6 +65,7 @@ impl<'a> Scene<'a> {
                 }
                 list.extend(ways());
             }
+            Some(Origin::Opposite) if near.first == First::Gone => list.extend(self.gone_by()),
             Some(Origin::Opposite) => {
                 if !stands {
                     list.extend(self.oncoming(half_m));

@@ -4,7 +4,7 @@ use crate::others::crossing::WALKER_GAP_M;
 use crate::others::scene::{BESIDE_M, PARKED_AHEAD_M, ROUND_AHEAD_M, Scene};
 use crate::told::others::{Extra, Role};
 use crate::told::side::size_of;
-use crate::usual::{LANE_M, LEAD_GAP_M, ROOM_M};
+use crate::usual::{LANE_M, LEAD_GAP_M, ROOM_M, beyond_m};
 use recrash_model::account::{ContactState, LeftRight, Origin};
 use recrash_model::geometry::Vec2;
 use recrash_model::math;
@@ -18,12 +18,12 @@ const BETWEEN_M: f64 = 0.6;
 const PASSED_BEFORE: usize = 35;
 const PASSED_BESIDE_M: f64 = 3.0;
 
+/// Who is slow, and for whom the partner leaves its lane, drives at so much of the partner's speed. [-]
+const SLOWER: f64 = 0.6;
+
 /// Who drives in the next lane is so far ahead of the ego, and its course goes on so far. [m]
 const ABREAST_M: f64 = 3.0;
 const BEYOND_M: f64 = 160.0;
-
-/// Who is slower than the partner that leaves its lane for it has this share of its speed. [-]
-const SLOWER: f64 = 0.6;
 
 /// An ego that is faster than this all the time does not stand. [m/s]
 const STEADY_MPS: f64 = 2.0;
@@ -42,7 +42,7 @@ impl Scene<'_> {
         let stalls = is(right, StripKind::Stalls);
         let has = |strips: &[Strip]| is(strips, StripKind::Parking) || is(strips, StripKind::Stalls);
         // Whom it passes is abreast of its front; between whom and the ego the partner passes is abreast of that.
-        let far_m = match (extra.passed, self.told.layout.by_kerb) {
+        let far_m = match (extra.passed, self.told.layout.along_kerb) {
             (true, _) => 0.0,
             (false, true) => -self.front_m(),
             (false, false) => PARKED_AHEAD_M + 0.5 * length_m,
@@ -71,7 +71,7 @@ impl Scene<'_> {
     }
 
     /// Whom the partner goes round: in the line on which it came, where it has left that, or ahead of where it touches the ego.
-    pub(super) fn passed(&self, length_m: f64) -> Option<ActorPlan> {
+    pub(super) fn passed(&self, extra: &Extra, length_m: f64) -> Option<ActorPlan> {
         let track = self.partner?;
         let (came, met) = (track.states[0].pose(), track.states[self.until.min(track.states.len() - 1)].pose());
         let along = Vec2::from_heading(came.heading);
@@ -80,7 +80,7 @@ impl Scene<'_> {
             .find(|state| along.cross(state.position() - came.position).abs() > BESIDE_M);
         // Beside the line, on the ego's side, where it passes before it comes in.
         let before = self.until.saturating_sub(PASSED_BEFORE).min(track.states.len() - 1);
-        let over = self.told.comes_over;
+        let over = self.told.comes_over || extra.goes_out;
         let aside_m = if over { 0.0 } else { PASSED_BESIDE_M };
         let to_ego = along.cross(self.ego.states[self.until].position() - came.position).signum();
         let on_m = match left {
@@ -89,36 +89,13 @@ impl Scene<'_> {
             None => along.dot(met.position - came.position) + 0.5 * (track.length_m + length_m) + ROUND_AHEAD_M,
         };
         let at = came.position + along * on_m + along.left() * (to_ego * aside_m);
-        (on_m > 0.0).then(|| ActorPlan::standing(Place::at(at.x, at.y, came.heading.to_degrees())))
-    }
-
-    /// For whom the partner leaves its lane: ahead of it in that, so far that it comes by, or does not come up to it before it touches the ego; who
-    /// drives there does so slower.
-    pub(super) fn left_behind(&self, extra: &Extra, length_m: f64) -> Option<ActorPlan> {
-        let track = self.partner?;
-        let last = self.until.min(track.states.len() - 1);
-        let came = track.states[0].pose();
-        let along = Vec2::from_heading(came.heading);
-        let way = |step: usize| track.states[step].position() - came.position;
-        let left = (0..=last).find(|step| along.cross(way(*step)).abs() > BESIDE_M);
-        let room_m = if left.is_some() && !extra.slower { ROOM_M } else { ROUND_AHEAD_M };
-        let step = left.filter(|_| !extra.slower).unwrap_or(last);
-        let on_m = along.dot(way(step)) + 0.5 * (track.length_m + length_m) + room_m;
-        let place = |on_m: f64| {
-            let at = came.position + along * on_m;
-            Place::at(at.x, at.y, came.heading.to_degrees())
-        };
-        if !extra.slower {
-            return Some(ActorPlan::standing(place(on_m)));
-        }
-        let speed_mps = SLOWER * along.dot(way(last)) / (0.1 * last.max(1) as f64);
-        let from_m = on_m - speed_mps * self.told.contact_s;
-        let room_m = 0.5 * (track.length_m + length_m) + ROOM_M;
-        (speed_mps > STEADY_MPS && from_m > room_m).then(|| ActorPlan {
-            speed_mps,
-            course: vec![Leg::Curve { to: place(on_m + BEYOND_M), reverse: false }],
-            ..ActorPlan::standing(place(from_m))
-        })
+        let place = |at: Vec2| Place::at(at.x, at.y, came.heading.to_degrees());
+        let mean_mps = along.dot(met.position - came.position) / (0.1 * self.until.max(1) as f64);
+        let speed_mps = if extra.slow { SLOWER * mean_mps } else { 0.0 };
+        let begin = at - along * (speed_mps * self.told.contact_s);
+        let to = Leg::Curve { to: place(at + along * beyond_m(speed_mps)), reverse: false };
+        let course = if extra.slow { vec![to] } else { Vec::new() };
+        (on_m > 0.0).then(|| ActorPlan { speed_mps, course, ..ActorPlan::standing(place(begin)) })
     }
 
     /// Where a partner that comes across passes a line beside the ego's way. [m]

@@ -1,5 +1,6 @@
 //! What each of the two is told to have done before the contact, one act after the other.
 
+use crate::reading::words::text;
 use crate::told::doing::{Doing, least};
 use crate::told::zones::side_of;
 use recrash_model::account::{
@@ -51,8 +52,7 @@ pub(super) fn told(party: &Party, state: ContactState) -> Vec<Doing> {
         let over = acts[number + 1..].iter().any(|later| later.act == Act::Turn);
         let (step, after_other) = (fact.step, fact.after_other);
         // "It then began to turn": it had set off for that, behind what the other did.
-        let set_off =
-            |implied| Doing { act: Act::SetOff, side: None, begun: false, over: false, implied, step, after_other };
+        let set_off = |implied| Doing { implied, ..Doing::plain(Act::SetOff, step, after_other) };
         if standing && !state.stands() && after_other.is_some() && sets_off_for(fact.act) {
             list.push(set_off(true));
         }
@@ -61,8 +61,8 @@ pub(super) fn told(party: &Party, state: ContactState) -> Vec<Doing> {
         list.extend(goes.then(|| set_off(false)));
         standing = stands(fact.act) || standing && waits && !goes;
         if !skipped {
-            let (act, side, begun) = (fact.act, fact.side, fact.begun);
-            list.push(Doing { act, side, begun, over, implied: false, step, after_other });
+            let (side, begun, within_lane) = (fact.side, fact.begun, stays_in_lane(fact));
+            list.push(Doing { side, begun, over, within_lane, ..Doing::plain(fact.act, step, after_other) });
         }
     }
     // "Stopped at the kerb" of who pulls out: it stood there.
@@ -77,6 +77,11 @@ pub(super) fn told(party: &Party, state: ContactState) -> Vec<Doing> {
     }
     list.dedup_by_key(|doing| (doing.act, doing.side, doing.begun));
     list
+}
+
+/// Whether somebody is told to have gone aside and not to have left its lane: "moved to the right within its lane".
+fn stays_in_lane(fact: &ActFact) -> bool {
+    matches!(fact.act, Act::Drift | Act::Swerve) && text(&fact.source).contains("within")
 }
 
 /// Whether somebody is told to have turned to the other side after this turn: that was the road on which it came, and which it left.

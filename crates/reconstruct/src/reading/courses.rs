@@ -152,7 +152,9 @@ impl Told {
         let nears = before().any(|fact| fact.act == Act::Slow) || words.any(|words| words.contains("approach"));
         let across = matches!(self.origin, Origin::Beside { .. }) && self.cp.turning == self.sv.turning;
         let before_turn = comes_along && (into_rear || nears && (behind || across));
-        if unsaid && (slows && (into_rear || behind && passed) || turns && before_turn) {
+        // Who walks over the crosswalk before it does so before the turn.
+        let walks = self.crosses_at_walk() && sv.did(Act::SetOff);
+        if unsaid && (slows && (into_rear || behind && passed || walks) || turns && before_turn) {
             self.sv.turns_later = turns && !self.enters();
         }
     }
@@ -247,11 +249,12 @@ impl Told {
         let reacts = steps(sv, answers).into_iter().min();
         let turning = matches!(self.cp.turning, Turning::Left | Turning::Right);
         self.sv.reacts = turning && !self.cp.stood_first && turns.is_some() && turns < reacts;
-        // Who swerves from somebody that comes at it does so away from it.
+        // Who swerves from somebody that comes at it, or steers aside and keeps its way, does so away from it.
         let swerves = !steps(sv, |act| act == Act::Swerve).is_empty();
-        let straight =
-            matches!(self.sv.movement, Some(Movement::Straight | Movement::LaneDeparture | Movement::Passing));
-        if swerves && straight && self.sv.aside.is_none() && self.striker == Some(Striker::Cp) {
+        let goes_on = matches!(self.sv.movement, Some(Movement::Straight | Movement::Passing));
+        let steers = goes_on && !steps(sv, |act| act == Act::Drift).is_empty();
+        let departs = self.sv.movement == Some(Movement::LaneDeparture);
+        if (swerves && (goes_on || departs) || steers) && self.sv.aside.is_none() && self.striker == Some(Striker::Cp) {
             self.sv.aside = match self.origin {
                 Origin::Beside { side } | Origin::Cross { side } => Some(side.other()),
                 _ => side_of(&self.sv.zones).map(|side| if side > 0.0 { LeftRight::Right } else { LeftRight::Left }),

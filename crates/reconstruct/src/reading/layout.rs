@@ -5,7 +5,7 @@ use crate::told::layout::{Counted, Layout, Standing, StoodOpen};
 use crate::told::zones::side_of;
 use recrash_model::account::{
     Account, Act, ActFact, Fact, LaneLine, LaneWord, LeftRight, Origin, Party, RoadFeature, SignalState, Source,
-    Striker, told,
+    StandReason, Striker, told,
 };
 use recrash_model::template::Movement;
 
@@ -33,7 +33,12 @@ impl Layout {
             narrow: has(RoadFeature::NarrowStreet),
             one_way: has(RoadFeature::OneWay),
             splits: splits_lanes(partner),
-            by_kerb: passes_by_kerb(account, partner),
+            crosswalk: is_told_on(account, partner, &["crosswalk", "sidewalk"])
+                && !is_told_on(account, partner, &BESIDE_WALK),
+            beside_crosswalk: is_told_on(account, partner, &BESIDE_WALK),
+            along_kerb: passes_by_kerb(account, partner)
+                || is_told_on(account, partner, &["between"]) && is_told_on(account, partner, &BESIDE_KERB),
+            abreast: drives_abreast(account, partner),
             centre_line: has(RoadFeature::DoubleYellowLine),
             right_lane: goes_out_right(account, partner),
             turn_lane: has(RoadFeature::TurnLane) && goes_to_turn_lane(account, partner)
@@ -41,6 +46,7 @@ impl Layout {
             left_to_come: goes_to_turn_left(&account.sv),
             arrow: turns_on_arrow(&account.sv),
             light_changes: light_changes(&account.sv),
+            on_red: turns_on_red(&account.sv),
             rear_door: rear_door(account, partner),
             stood_open: stood_open(account, partner),
         }
@@ -69,6 +75,36 @@ fn passes_by_kerb(account: &Account, partner: &Party) -> bool {
         fact.act == Act::Pass && !fact.after_contact && (between || parked)
     };
     partner.acts.iter().any(by)
+}
+
+/// Words for somebody that crosses where no crosswalk is.
+const BESIDE_WALK: [&str; 4] = ["outside of", "ahead of the crosswalk", "mid-block", "midblock"];
+
+/// Words for what is at the edge of the road.
+const BESIDE_KERB: [&str; 4] = ["curb", "kerb", "gutter", "parked"];
+
+/// Whether words for the way of the partner, or for what it did before the contact, hold one of these: "rode off the sidewalk".
+fn is_told_on(account: &Account, partner: &Party, words: &[&str]) -> bool {
+    let acts = partner.acts.iter().filter(|fact| !fact.after_contact).map(|fact| &fact.source);
+    let from = account.came_from.iter().map(|fact| &fact.source);
+    let lane = partner.lane.iter().map(|fact| &fact.source);
+    acts.chain(from).chain(lane).map(text).any(|text| words.iter().any(|word| text.contains(word)))
+}
+
+/// Words for two that drive side by side, and for one that comes up to the other.
+const ABREAST: [&str; 8] =
+    ["next to", "alongside", "side by side", "side-by-side", "abreast", "same pace", "beside it", "beside the"];
+const COMES_UP: [&str; 6] = ["came up", "coming up", "approach", "overt", "pass", "behind"];
+
+/// Whether words for the place of a partner beside the ego have the two drive side by side: "a van was next to it in the left lane"; not who
+/// "came up alongside".
+fn drives_abreast(account: &Account, partner: &Party) -> bool {
+    let beside = account.came_from.as_ref().filter(|fact| matches!(fact.value, Origin::Beside { .. }));
+    let passes = matches!(told(&partner.movement), Some(Movement::Passing)) || partner.did(Act::Pass);
+    beside.map(|fact| text(&fact.source)).is_some_and(|text| {
+        let has = |words: &[&str]| words.iter().any(|word| text.contains(word));
+        !passes && has(&ABREAST) && !has(&COMES_UP)
+    })
 }
 
 /// Whether the partner is told in a lane for left turns beside an ego in the left lane, or goes out to its left there, past the ego.
@@ -123,7 +159,11 @@ fn standing(account: &Account, party: &Party) -> Standing {
     // Who is partly in a lane and partly beside it is in none.
     let partly = told(&party.astride).is_some_and(|over| over.line == LaneLine::Edge);
     let in_lane = double || !partly && party.acts.iter().rfind(stands).is_some_and(is_in_lane);
-    Standing { counted: lane, at_kerb: stands_at_kerb(account, party), in_lane }
+    let last = party.acts.iter().rfind(stands).map_or(String::new(), |fact| text(&fact.source));
+    // Where it lets somebody in or out there, it is at the kerb.
+    let edge = last.ends_with(" edge") || last.ends_with("lane") && last.contains("edge of");
+    let boards = party.reasons.iter().any(|fact| fact.value == StandReason::PickupDropoff) && !in_lane;
+    Standing { counted: lane, at_kerb: edge && boards || stands_at_kerb(account, party), in_lane, lane_edge: edge }
 }
 
 /// "parked in the travel lane": the reader's words of who stands in a lane end with it.
@@ -192,6 +232,12 @@ fn light_changes(party: &Party) -> bool {
     });
     let light = |text: &str| text.contains("light") || text.contains("signal");
     turned || texts.any(|text| text.contains("green") || light(&text) && text.contains("chang"))
+}
+
+/// Whether words tell that somebody turned at red: "a right turn on red".
+fn turns_on_red(party: &Party) -> bool {
+    let acts = party.acts.iter().filter(|fact| !fact.after_contact).map(|fact| &fact.source);
+    acts.chain(party.controls.iter().map(|fact| &fact.source)).any(|source| text(source).contains("on red"))
 }
 
 /// So many words before "door" tell which one it is.

@@ -1,6 +1,6 @@
 //! What is told of others who have no part in what the ego does.
 
-use crate::reading::story::{is_parked, stands_in_lane};
+use crate::reading::story::{is_in_turn_lane, is_parked, stands_in_lane};
 use crate::reading::words::text;
 use crate::told::near::{Does, First, Near};
 use recrash_model::account::{Act, ActFact, Kind, KindGroup, LeftRight, Origin, Other};
@@ -57,7 +57,7 @@ impl Does {
     }
 
     /// What an act tells of somebody at a place; nothing where it is not drawn.
-    fn of(fact: &ActFact, place: Option<Origin>, on_wheels: bool) -> Option<Self> {
+    fn of(fact: &ActFact, place: Option<Origin>, (on_wheels, into_lane): (bool, bool)) -> Option<Self> {
         let at_kerb = matches!(place, None | Some(Origin::Ahead | Origin::Beside { .. } | Origin::Parked { .. }));
         let in_lanes = matches!(
             place,
@@ -77,6 +77,7 @@ impl Does {
             Act::Turn if fact.side == Some(LeftRight::Left) && place == Some(Origin::Opposite) => Self::TurnsLeft,
             Act::Turn if in_lanes && on_wheels => Self::Turns(fact.side),
             Act::PullOut if at_kerb => Self::PullsOut,
+            Act::Swerve if on_wheels && place == Some(Origin::Ahead) && into_lane => Self::Changes(fact.side),
             // From beside the ego towards that.
             Act::Drift | Act::Swerve if on_wheels => Self::GoesAside(fact.side.or(match place {
                 Some(Origin::Beside { side }) => Some(side.other()),
@@ -121,7 +122,13 @@ impl Near {
         let on_wheels = !matches!(other.kind.value.group(), KindGroup::OnFoot | KindGroup::Animal);
         let crosses = on_wheels && before.iter().any(|fact| fact.act == Act::Cross);
         let across = place.is_none() && (crosses || said(&["cross traffic", "cross-traffic", "crossing traffic"]));
-        let all: Vec<Does> = before.iter().map(|fact| Does::of(fact, place, on_wheels)).collect::<Option<_>>()?;
+        // "A truck ahead of it swerved into the left lane": it was in the ego's before.
+        let into_lane = other.place.as_ref().is_some_and(|fact| {
+            let words = text(&fact.source);
+            ["to the left lane", "to the right lane", "to the next lane"].iter().any(|lane| words.contains(lane))
+        });
+        let all: Vec<Does> =
+            before.iter().map(|fact| Does::of(fact, place, (on_wheels, into_lane))).collect::<Option<_>>()?;
         let mut deeds: Vec<Does> = Vec::new();
         for does in all.iter().copied().filter(|does| does.is_deed()) {
             match deeds.last_mut().filter(|last| last.is_same(does)) {
@@ -141,7 +148,7 @@ impl Near {
         // A queue stands.
         let queue = other.place.as_ref().is_some_and(|fact| text(&fact.source).contains("queue"));
         let does = match does {
-            Does::Untold if queue => Does::Stands,
+            Does::Untold if queue || is_in_turn_lane(other) => Does::Stands,
             // "A truck in the opposing lane blocked its view of who came from behind that."
             Does::Untold if other.hides && place == Some(Origin::Opposite) => Does::Stands,
             // "A gap in passing traffic".

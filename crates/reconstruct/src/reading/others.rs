@@ -97,6 +97,13 @@ pub(super) fn wanted(told: &Told, account: &Account) -> Vec<Extra> {
             let after_turn = story.is_after_turn(told, other);
             let near = near.map(|near| Near { after_turn, ..near });
             let near = near.map(|near| if told.dropped == Some(number) { near.ahead() } else { near });
+            let near = near.map(|near| {
+                if story.goes_first(told, other) {
+                    near.gone_first(Story::first_from(told) == Role::Oncoming)
+                } else {
+                    near
+                }
+            });
             let hides = other.hides;
             near.map(|near| Extra { awaited, several, hides, ..Extra::near(near, number, kind) })
         };
@@ -152,7 +159,7 @@ pub(super) fn wanted(told: &Told, account: &Account) -> Vec<Extra> {
                 let between = role == Role::Beside && story.is_between(told, other);
                 let parks = role == Role::Lead && is_parking(other);
                 let passed = matches!(role, Role::Kerb | Role::Obstacle) && story.goes_by(told, other);
-                let in_line = role == Role::Passed && story.is_left_behind(told, other);
+                let goes_out = role == Role::Passed && story.is_reason_to_go_out(told, other);
                 list.push(Extra {
                     of: vec![number],
                     kind,
@@ -160,16 +167,16 @@ pub(super) fn wanted(told: &Told, account: &Account) -> Vec<Extra> {
                     parks,
                     parked,
                     first,
+                    goes_out,
+                    slow: goes_out && before_contact(other).next().is_none(),
                     again,
                     late,
-                    early: role == Role::Crosser && story.is_gone_before(other),
+                    early: role == Role::Crosser && (story.is_gone_before(other) || story.goes_first(told, other)),
                     awaited,
                     behind,
                     between,
                     led: role == Role::Animal && story.led_by(other).is_some(),
                     hides: other.hides,
-                    in_line,
-                    slower: in_line && story.is_slower(other),
                     passed,
                     stays,
                     opposite: other.place.as_ref().is_some_and(|fact| fact.value == Origin::Opposite),

@@ -8,13 +8,16 @@ use recrash_model::account::{
     Act, ActFact, ContactState, Control, ControlDevice, Kind, KindGroup, LeftRight, Manner, Obeyed, Party, SignalState,
     Source, SpeedMeaning, Standing, told,
 };
+use recrash_model::kinds::PartnerKind;
 use recrash_model::template::Movement;
 use recrash_model::zones::ContactZone;
 
 /// What is told of one side.
 pub(super) fn side(party: &Party, kind: Option<Kind>, assumed: &mut Vec<String>, who: &str) -> Side {
     let kind = kind.or_else(|| told(&party.kind));
-    let partner_kind = kind.and_then(Kind::partner_kind);
+    // A robot of the sidewalk is no vehicle of the road.
+    let robot = kind.filter(|kind| *kind == Kind::DeliveryRobot).map(|_| PartnerKind::OtherNonMotorist);
+    let partner_kind = robot.or_else(|| kind.and_then(Kind::partner_kind));
     if partner_kind.is_none() && who == "partner" {
         assumed.push("the partner is a passenger car".to_owned());
     }
@@ -80,8 +83,9 @@ pub(super) fn side(party: &Party, kind: Option<Kind>, assumed: &mut Vec<String>,
         });
     let slows = party.acts.iter().any(|fact| matches!(fact.act, Act::Slow | Act::Stop) && !fact.after_contact);
     let slows = slows && (!stood_first || slowed_after_its_stand(party));
+    let came_at = told_mps(SpeedMeaning::Approach).or_else(|| faster_than(party, impact_mps));
     let slowed_from = (slows && !gained_last(party) && state == ContactState::Moving)
-        .then(|| Slowed(told_mps(SpeedMeaning::Approach).filter(|_| !stood_first)));
+        .then(|| Slowed(came_at.filter(|_| !stood_first)));
     // "Came up from behind at 23 mph and struck it": who is told to come so fast, and of no change of speed, struck it so fast.
     let steady =
         state == ContactState::Moving && turning == Turning::No && !stood_first && !slows && !gained_last(party);
@@ -128,7 +132,7 @@ pub(super) fn side(party: &Party, kind: Option<Kind>, assumed: &mut Vec<String>,
                 || movement == Some(Movement::Straight)
                 || movement == Some(Movement::Stopped) && went_on_straight(party)),
         crossed: acts::has_crossed(party),
-        completes: is_completing(party, movement),
+        completes: is_completing(party, movement) || acts.iter().any(|doing| doing.within_lane),
         turns_wide: false,
         dodges: false,
         slants: None,
@@ -165,6 +169,16 @@ pub(super) fn side(party: &Party, kind: Option<Kind>, assumed: &mut Vec<String>,
         lane_to_come: party.lane.as_ref().is_some_and(|fact| goes_there(&fact.source)),
         control: control(party),
     }
+}
+
+/// So much faster than at the contact is more than is usual of who slows. [m/s]
+const MUCH_FASTER_MPS: f64 = 4.0;
+
+/// A column's speed where words tell a much lower one at the contact: with that it came, and slowed then. [m/s]
+fn faster_than(party: &Party, impact_mps: Option<f64>) -> Option<f64> {
+    let at_contact = party.speeds.iter().filter(|fact| fact.value.meaning == SpeedMeaning::Impact);
+    let mut column = at_contact.filter(|fact| matches!(fact.source, Source::Column { .. })).map(|fact| fact.value.mps);
+    column.next_back().filter(|mps| impact_mps.is_some_and(|impact| *mps > impact + MUCH_FASTER_MPS))
 }
 
 /// Whether a stop is told on its way, and not as done: "was coming to a stop", "was stopping".

@@ -24,8 +24,8 @@ const PASSES_WITHIN: usize = 12;
 /// Who is named no farther behind another is with that: " with ". [byte]
 const WITH_WITHIN: usize = 8;
 
-/// Who is named no farther behind the words that the partner left its lane, or before them, is whom it did so for. [byte]
-const LEFT_WITHIN: usize = 24;
+/// For whom the partner leaves its lane is named no farther behind the words for that: " to the left to go around ".
+const GOES_OUT_WITHIN: usize = 30;
 
 /// What blocks a junction is named no more than so many bytes before the words for it: " that was ".
 const BLOCKS_WITHIN: usize = 16;
@@ -72,6 +72,16 @@ fn cuts_in(other: &Other) -> bool {
 
 /// Words for one that stands in a lane.
 const IN_LANE: [&str; 6] = ["in-lane", "in lane", "in the lane", "in its lane", "double-parked", "double parked"];
+
+/// Whether one that is told opposite, in a lane for turns, and to do nothing stands there: "a truck in the opposing left turn lane".
+pub(super) fn is_in_turn_lane(other: &Other) -> bool {
+    let lane = |source: &Source| {
+        let words = text(source);
+        words.contains("turn lane") || words.contains("turn pocket") || words.contains("turning lane")
+    };
+    let there = other.place.as_ref().is_some_and(|fact| fact.value == Origin::Opposite && lane(&fact.source));
+    there && !other.several && before_contact(other).next().is_none()
+}
 
 /// Whether somebody is told to stand in a lane, and not partly there: at no kerb.
 pub(super) fn stands_in_lane(other: &Other) -> bool {
@@ -184,6 +194,31 @@ impl Story<'_> {
         let named = span(&other.kind.source).zip(span(&off.source));
         let between = named.is_some_and(|((_, end), (off, _))| end <= off && off < end + NAMED_WITHIN);
         again && between && !self.is_near(other) && before_contact(other).next().is_none()
+    }
+
+    /// Whether somebody is told to have gone by while the ego stood, and no more, before it set off or turned: "after a bus had gone by, it
+    /// started its turn"; or is named for that stop alone, as another of them is: "it had waited for a van and a bus".
+    pub(super) fn goes_first(&self, told: &Told, other: &Other) -> bool {
+        let ego = || self.account.sv.acts.iter().filter(|fact| !fact.after_contact);
+        let goes = |fact: &&ActFact| matches!(fact.act, Act::SetOff | Act::Enter | Act::Turn);
+        let Some(stood) = ego().find(|fact| matches!(fact.act, Act::Hold | Act::Stop)) else { return false };
+        let Some(off) = ego().filter(goes).find(|fact| fact.step > stood.step) else { return false };
+        let by = |fact: &ActFact| {
+            let words = text(&fact.source);
+            let plain = ["by", "passed", "through", "first"].iter().any(|word| words.ends_with(word));
+            fact.act == Act::Pass && fact.done && plain && (stood.step..off.step).contains(&fact.step)
+        };
+        let passes = |other: &Other| before_contact(other).next().is_some() && before_contact(other).all(by);
+        let named = span(&stood.source).zip(span(&off.source)).zip(span(&other.kind.source));
+        let between = named.is_some_and(|(((_, stood), (off, _)), (first, end))| stood <= first && end <= off);
+        let alike = between && before_contact(other).next().is_none() && self.account.others.iter().any(passes);
+        is_at_junction(told) && other.place.is_none() && (passes(other) || alike)
+    }
+
+    /// Where those come from who go first: towards an ego that turns left at no stop sign, else along the crossing road.
+    pub(super) fn first_from(told: &Told) -> Role {
+        let sign = told.sv.control.is_some_and(|said| said.device == ControlDevice::StopSign);
+        if told.sv.turning == Turning::Left && !sign { Role::Oncoming } else { Role::Crosser }
     }
 
     /// Whether somebody on foot, or an animal, is whom the ego slowed or stood for.
@@ -299,33 +334,6 @@ impl Story<'_> {
         other.hides && stays && beside && !at_kerb && across && told.comes_from_side().is_some()
     }
 
-    /// Whether the partner leaves its lane for somebody, who is named right behind that, or right before it with the words that the partner came
-    /// up: "changed lanes to go around a stopped bus", "came up behind a slower truck and began to change lanes".
-    pub(super) fn is_left_behind(&self, told: &Told, other: &Other) -> bool {
-        let along = matches!(told.origin, Origin::Behind | Origin::Ahead | Origin::Beside { .. } | Origin::Opposite);
-        let Some((first, last)) = span(&other.kind.source).filter(|_| along && told.cp.state == ContactState::Moving)
-        else {
-            return false;
-        };
-        let acts = || self.account.partner.iter().flat_map(|partner| &partner.acts).filter(|fact| !fact.after_contact);
-        let came_up = |fact: &ActFact| {
-            let end = span(&fact.source).map_or(0, |(_, end)| end);
-            matches!(fact.act, Act::Follow | Act::Slow) && (end..end + PASSES_WITHIN).contains(&first)
-        };
-        let leaves = |fact: &ActFact| {
-            let Some((start, end)) = span(&fact.source) else { return false };
-            let within = (start..end).contains(&first);
-            let behind = (end..=end + LEFT_WITHIN).contains(&first);
-            let before = (last..=last + LEFT_WITHIN).contains(&start) && acts().any(came_up);
-            match fact.act {
-                Act::Pass => within,
-                Act::LaneChange | Act::Drift | Act::Swerve => within || behind || before,
-                _ => false,
-            }
-        };
-        acts().any(leaves)
-    }
-
     /// With whom an animal goes of which no more is told: "a man with a dog".
     pub(super) fn led_by(&self, other: &Other) -> Option<&Other> {
         let (first, _) = span(&other.kind.source)?;
@@ -337,10 +345,23 @@ impl Story<'_> {
         self.account.others.iter().find(with).filter(|_| alone)
     }
 
-    /// Whether somebody is told to drive slowly, and to do nothing else.
-    pub(super) fn is_slower(&self, other: &Other) -> bool {
-        let slow = text(&other.kind.source).contains("slow") || before_contact(other).any(|fact| fact.act == Act::Slow);
-        slow && self.only_drives(other)
+    /// Whether somebody who stands, or is slow, is told right behind the words that the partner came up or left its lane beside the ego: "came up
+    /// behind a slow truck and changed lanes", "changed lanes to go around a stopped bus".
+    pub(super) fn is_reason_to_go_out(&self, told: &Told, other: &Other) -> bool {
+        let goes = |fact: &&ActFact| matches!(fact.act, Act::Follow | Act::LaneChange | Act::Pass | Act::Slow);
+        let Some(partner) = self.account.partner.as_ref() else { return false };
+        let leaves = partner.acts.iter().any(|fact| fact.act == Act::LaneChange && !fact.after_contact);
+        let acts = partner.acts.iter().filter(|fact| !fact.after_contact).filter(goes);
+        let ends: Vec<usize> = acts.filter_map(|fact| Some(span(&fact.source)?.1)).collect();
+        let behind = |(start, _)| ends.iter().any(|end| (*end..=end + GOES_OUT_WITHIN).contains(&start));
+        let holds = |fact: &ActFact| matches!(fact.act, Act::Hold | Act::Park | Act::Stop);
+        let words = text(&other.kind.source);
+        let slow = words.contains("slow");
+        let still = before_contact(other).next().is_some() && before_contact(other).all(holds);
+        let beside = matches!(told.origin, Origin::Beside { .. }) && told.cp.state == ContactState::Moving;
+        let there =
+            other.place.is_none() && !other.several && (still || slow && before_contact(other).next().is_none());
+        beside && leaves && there && span(&other.kind.source).is_some_and(behind)
     }
 
     /// Whether the partner is told to pass between the ego and somebody: who is named right behind that; where nobody is, and the partner
@@ -481,6 +502,12 @@ impl Story<'_> {
         let reacts = self.reactions().next().is_some();
         let because = |reason: StandReason| told.reasons.contains(&reason);
         let stands = did(&[Act::Hold, Act::Stop, Act::Park]) && !did(&[Act::SetOff, Act::Follow, Act::Reverse]);
+        if self.goes_first(told, other) {
+            return Some(Self::first_from(told));
+        }
+        if self.is_reason_to_go_out(told, other) {
+            return Some(Role::Passed);
+        }
         if stands && !other.several && !near && self.is_passed(told) {
             return Some(Role::Passed);
         }
@@ -490,12 +517,8 @@ impl Story<'_> {
         if self.is_screen(told, other) {
             return Some(Role::Screen);
         }
-        let double = said(&["double"]) || stands_in_lane(other);
-        let in_lane = stands && (double || !is_parked(other)) || self.is_slower(other);
-        if in_lane && !other.several && !near && self.is_left_behind(told, other) {
-            return Some(Role::Passed);
-        }
         if is_parked(other) && !did(&[Act::PullOut, Act::SetOff, Act::Follow, Act::Reverse]) {
+            let double = said(&["double"]) || stands_in_lane(other);
             let waits =
                 because(StandReason::BlockedPath) || because(StandReason::LeadVehicle) || place == Some(Origin::Ahead);
             let named_before = double && place.is_none() && self.is_named_before(other);
@@ -537,6 +560,10 @@ impl Story<'_> {
         if did(&[Act::Reverse]) && matches!(place, Some(Origin::Beside { .. })) && (near || reacts) {
             return Some(Role::Backer);
         }
+        // Who waits there to turn itself comes towards nobody.
+        if is_in_turn_lane(other) {
+            return None;
+        }
         if place == Some(Origin::Opposite) || said(&["oncoming", "opposing"]) {
             let only_passes = !did(&[Act::Hold, Act::Stop, Act::Turn, Act::LaneChange, Act::Park, Act::Reverse]);
             // Of who turns across it, it is told only because that waits for it.
@@ -572,7 +599,8 @@ impl Story<'_> {
         }
         // At a stop sign whom it yields to, of whom no more is told, comes along the crossing road.
         let sign = told.sv.control.is_some_and(|said| said.device == ControlDevice::StopSign);
-        if sign && near && acts_not && place.is_none() && !ahead && !queue && because(StandReason::Yield) {
+        let lets_go = because(StandReason::Yield) || told.sv.enters();
+        if sign && near && acts_not && place.is_none() && !ahead && !queue && lets_go {
             return Some(Role::Crosser);
         }
         let leaves = did(&[Act::LaneChange, Act::Enter, Act::PullOut, Act::Cross, Act::Reverse, Act::Pass, Act::Drift]);

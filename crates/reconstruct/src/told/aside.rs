@@ -12,6 +12,8 @@ use recrash_model::template::Movement;
 /// of it at the contact. [m]
 const DEPARTS_M: f64 = 1.6;
 const DEPARTS_A_LITTLE_M: f64 = 0.8;
+const WITHIN_LANE_M: f64 = 0.65;
+const STOPS_WITHIN_LANE_M: f64 = 1.1;
 const KERB_M: f64 = 2.6;
 const CHANGES_M: f64 = 2.2;
 
@@ -71,7 +73,7 @@ impl Told {
             _ if self.leaves_kerb() => (KERB_M, if self.stands_beside(false) { KERB_M - LEAVES_KERB_M } else { 0.0 }),
             Movement::ChangingLanes | Movement::Merging => (0.0, by(left, LANE_M)),
             Movement::CrossingIntoOpposingLane => (0.0, -LANE_M),
-            Movement::LaneDeparture => (0.0, by(right, DEPARTS_M)),
+            Movement::LaneDeparture => (0.0, by(right, self.sv_departs_m())),
             // From the kerb, or the one told.
             Movement::EnteringTraffic => {
                 let from_left = self.sv.aside == Some(right) || self.leaves_left_kerb();
@@ -81,7 +83,7 @@ impl Told {
             // It changed lanes on its way.
             Movement::Straight if self.sv.changed_lanes && self.sv.aside.is_some() => (0.0, by(left, LANE_M)),
             // It dodged, or drifted, while it drove on.
-            Movement::Straight | Movement::Passing if self.sv.aside.is_some() => (0.0, by(left, DEPARTS_M)),
+            Movement::Straight | Movement::Passing if self.sv.aside.is_some() => (0.0, by(left, self.sv_departs_m())),
             _ => return None,
         };
         let back = self.sv.returns && matches!(movement, Movement::ChangingLanes | Movement::Merging);
@@ -92,6 +94,16 @@ impl Told {
             done: (self.lane_changed || changed || self.sv.goes_round) && stopped.is_none(),
             back,
         })
+    }
+
+    /// How far the ego leaves its line that drifts or dodges: no farther than its lane, where it is told to have stayed in that. [m]
+    fn sv_departs_m(&self) -> f64 {
+        match self.sv.acts.iter().any(|doing| doing.within_lane) {
+            // Where it stands it has done half of that.
+            true if self.sv.state.stands() => STOPS_WITHIN_LANE_M,
+            true => WITHIN_LANE_M,
+            false => DEPARTS_M,
+        }
     }
 
     /// How far to the right the ego goes before its last stand that leaves its line in two goes, with a stand between. [m]

@@ -195,15 +195,15 @@ impl Told {
         touch.is_some_and(|touch| touch.by_partner && touch.of_partner.is_some_and(|zone| !zone.is_rear()))
     }
 
-    /// How an ego that stood at a red light may have come over its line without running it: to turn right, where it came to a stand in its turn and
-    /// nothing tells that the light changed, or that it waited for that; or by a little, to stand again. Of who drives on in its turn an account
+    /// How an ego that stood at a red light may have come over its line without running it: to turn right, where words tell that it did so at red, or
+    /// where it came to a stand in its turn and nothing tells that the light changed, or that it waited for that; or by a little, to stand again. Of who drives on in its turn an account
     /// holds no words for a light that "changed": it may have waited for that.
     pub(crate) fn keeps_red(&self) -> Option<AtRed> {
         let red = |said: &Control| said.state == Some(SignalState::Red) && said.obeyed != Some(Obeyed::No);
         let moved_up = self.sv.phases.ends_with(&[Phase::Stands, Phase::Drives, Phase::Stands]);
         let creeps = self.sv.enters() && moved_up && self.sv.turning == Turning::No;
         let right = self.sv.turning == Turning::Right && !self.sv.turns_later;
-        let turns = right && self.sv.state.stands() && !self.layout.light_changes;
+        let turns = right && (self.layout.on_red || self.sv.state.stands() && !self.layout.light_changes);
         let how = match (turns, creeps) {
             (true, _) => Some(AtRed::Turns),
             (_, true) => Some(AtRed::Creeps),

@@ -19,7 +19,8 @@ impl Told {
         );
         let along = along || self.rolls_out();
         let drives = !is_on_foot(self.cp.kind) && !matches!(self.cp.kind, PartnerKind::FixedObject);
-        along && drives && self.thing.is_none() && self.cp.state != ContactState::Parked && !self.comes_across()
+        let across = self.comes_across() || self.crosses_at_walk() || self.rides_along_kerb();
+        along && drives && self.thing.is_none() && self.cp.state != ContactState::Parked && !across
     }
 
     /// Whether the partner is told to have gone aside before the contact: turned, changed lanes, drifted, passed, pulled out or parked.
@@ -80,12 +81,16 @@ impl Told {
         beside && self.sv.lane == self.cp.lane && matches!(self.sv.lane, Some(LaneWord::LeftTurn | LaneWord::RightTurn))
     }
 
-    /// Whether the partner is told to go straight on behind an ego that turns.
+    /// Whether the partner is told to go straight on behind an ego that turns, or to pass it on the side to which it turns.
     pub(crate) fn goes_straight_behind(&self) -> bool {
-        let turns = matches!(self.sv.turning, Turning::Left | Turning::Right);
-        turns
-            && self.origin == Origin::Behind
-            && self.cp.movement == Some(Movement::Straight)
+        let inside = match self.sv.turning {
+            Turning::Left => LeftRight::Left,
+            Turning::Right => LeftRight::Right,
+            Turning::No | Turning::Round => return false,
+        };
+        let passes = self.cp.movement == Some(Movement::Passing) && self.touched_side() == Some(inside);
+        self.origin == Origin::Behind
+            && (passes || self.cp.movement == Some(Movement::Straight))
             && !self.sv.state.stands()
             && !self.sv.turned
     }

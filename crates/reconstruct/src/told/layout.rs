@@ -36,6 +36,8 @@ pub(crate) struct Standing {
     pub(crate) at_kerb: bool,
     /// It is parked in a lane: "double parked", "parked in-lane".
     pub(crate) in_lane: bool,
+    /// It stands at the edge of the road or of its lane.
+    pub(crate) lane_edge: bool,
 }
 
 /// What is told so.
@@ -48,8 +50,13 @@ pub(crate) struct Layout {
     pub(crate) one_way: bool,
     /// The partner rides or drives between two lanes: "lane-splitting".
     pub(crate) splits: bool,
-    /// The partner passes between the ego and the kerb, or who is parked there.
-    pub(crate) by_kerb: bool,
+    /// The partner comes over the crosswalk, or off the sidewalk; and it is told to have been beside the crosswalk.
+    pub(crate) crosswalk: bool,
+    pub(crate) beside_crosswalk: bool,
+    /// It comes by between the ego and the kerb, or who is parked there.
+    pub(crate) along_kerb: bool,
+    /// The two are told to have driven side by side.
+    pub(crate) abreast: bool,
     /// A double yellow line divides it.
     pub(crate) centre_line: bool,
     /// A lane for left turns lies beside the ego's, which is told to be the left one of those that go on.
@@ -62,6 +69,8 @@ pub(crate) struct Layout {
     pub(crate) arrow: bool,
     /// Words tell that the ego's light changed, or that it waited for green.
     pub(crate) light_changes: bool,
+    /// The ego is told to have turned at red: "a right turn on red".
+    pub(crate) on_red: bool,
     /// The door that took part is told to be a rear one, or a front one.
     pub(crate) rear_door: Option<bool>,
     /// That door is told to have stood open when the other came.

@@ -22,4 +22,5 @@ pub(crate) mod sizes;
 pub(crate) mod speeds;
 pub(crate) mod things;
 pub(crate) mod times;
+mod walk;
 pub(crate) mod zones;

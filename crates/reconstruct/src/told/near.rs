@@ -64,12 +64,23 @@ pub(crate) enum First {
     Came,
     /// Who was in the ego's way has left it.
     Left,
+    /// Who comes towards the ego has gone by when that, which stood, sets off.
+    Gone,
 }
 
 impl Near {
     /// The same of one that drives ahead of the ego.
     pub(crate) const fn ahead(self) -> Self {
         Self { place: Some(Origin::Ahead), does: Does::Drives, ..self }
+    }
+
+    /// The same of one that goes by before an ego that stood sets off, as others with that part do: towards it, or along the crossing road.
+    pub(crate) const fn gone_first(self, oncoming: bool) -> Self {
+        let (from, first) = match oncoming {
+            true => (Origin::Opposite, First::Gone),
+            false => (Origin::Cross { side: LeftRight::Left }, self.first),
+        };
+        Self { place: Some(from), does: Does::Drives, first, ..self }
     }
 
     /// The name of its actor.

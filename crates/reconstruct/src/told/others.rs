@@ -22,7 +22,7 @@ pub(crate) enum Role {
     Kerb,
     /// Stands in the lane that the ego leaves, or beside its way: it goes round it.
     Obstacle,
-    /// Stands in the lane that the partner leaves, or drives there, slower: it goes round it.
+    /// Stands in the lane that the partner leaves, or is slow there: it goes round it.
     Passed,
     /// Stands beside the ego's way, short of where the partner comes out from behind it.
     Screen,
@@ -90,7 +90,7 @@ impl Extra {
             Role::Thing => "a thing is in its lane ahead",
             Role::Kerb => "parked at the kerb",
             Role::Obstacle => "one stands that it goes round",
-            Role::Passed if self.slower => "one drives slower ahead of the partner",
+            Role::Passed if self.slow => "one is slow that the partner goes round",
             Role::Passed => "one stands that the partner goes round",
             Role::Screen => "one stands that hides the partner",
             Role::Merger => "one changes into its lane ahead",
@@ -113,6 +113,9 @@ pub(crate) struct Extra {
     pub(crate) parks: bool,
     /// Is told to be parked.
     pub(crate) parked: bool,
+    /// The partner, beside the ego, leaves its lane for it; and it drives slowly there, and does not stand.
+    pub(crate) goes_out: bool,
+    pub(crate) slow: bool,
     /// It does so before the ego moves between two stops.
     pub(crate) first: bool,
     /// It is told to stand again where the ego, which had set off, slows or stops: it moves up before that.
@@ -133,9 +136,6 @@ pub(crate) struct Extra {
     pub(crate) led: bool,
     /// Who comes across came out from behind it, or from between several.
     pub(crate) hides: bool,
-    /// The partner leaves its lane, in which it is ahead: it is no reason to be at the kerb. And it drives there, slower.
-    pub(crate) in_line: bool,
-    pub(crate) slower: bool,
     /// Who is on foot is told to stay where it is, and not to cross.
     pub(crate) stays: bool,
     /// It is told on the opposite side, and faces as those do who come from there.
@@ -160,6 +160,8 @@ impl Extra {
             goes: false,
             parks: false,
             parked: false,
+            goes_out: false,
+            slow: false,
             first: false,
             again: false,
             late: false,
@@ -170,8 +172,6 @@ impl Extra {
             between: false,
             led: false,
             hides: false,
-            in_line: false,
-            slower: false,
             stays: false,
             opposite: false,
             several: false,

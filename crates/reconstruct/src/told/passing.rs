@@ -8,6 +8,7 @@ use crate::told::side::{Turning, is_on_foot};
 use crate::told::zones::side_of;
 use crate::usual::LANE_M;
 use recrash_model::account::{ContactState, LaneLine, LaneWord, LeftRight, Origin, PlaceKind};
+use recrash_model::kinds::PartnerKind;
 use recrash_model::template::Movement;
 use recrash_model::zones::ContactZone;
 
@@ -98,7 +99,7 @@ impl Told {
     }
 
     /// Whether the partner stood behind the ego and changes lanes to the side on which it touches it then: out of the ego's lane.
-    fn goes_out(&self) -> bool {
+    pub(crate) fn goes_out(&self) -> bool {
         let to = self.cp.aside.or_else(|| self.cp.passes_on());
         let touched = touched_side(&self.sv.zones);
         let changes = self.cp.movement == Some(Movement::ChangingLanes);
@@ -138,6 +139,16 @@ impl Told {
             && !self.cp.stood_first
             && self.cp.lane.and_then(strip_of).is_none()
             && !self.is_thrown()
+            && !self.rides_along_kerb()
+    }
+
+    /// Whether a rider goes straight on along the kerb, into the rear of an ego that stands there: nobody tells that it left a lane.
+    pub(crate) fn rides_along_kerb(&self) -> bool {
+        let rides = matches!(self.cp.kind, PartnerKind::Cyclist | PartnerKind::OtherNonMotorist);
+        let aside = self.cp.dodges || self.cp.acts.iter().any(Doing::is_aside);
+        let straight = self.cp.movement == Some(Movement::Straight) && self.cp.turning == Turning::No && !aside;
+        let rear = !self.sv.zones.is_empty() && self.sv.zones.iter().all(|zone| zone.is_rear());
+        rides && straight && rear && self.origin == Origin::Behind && self.is_at_kerb()
     }
 
     /// Whether an oncoming partner drives straight on past an ego that stands, and touches it.

@@ -2,7 +2,7 @@
 
 use crate::told::crash::Told;
 use crate::told::doing::Doing;
-use crate::told::side::{Side, Slowed, Turning};
+use crate::told::side::{Side, Slowed, Turning, size_of};
 use crate::usual::{SLIDES_MPS, TURNS_MPS, WALKS_MPS, WHEELED_M};
 use recrash_model::account::{ContactState, Manner, Origin, PlaceKind};
 use recrash_model::kinds::PartnerKind;
@@ -27,6 +27,12 @@ const ABREAST_MPS: f64 = 1.0;
 /// An ego that is no faster than this creeps, and who was ahead beside its line drives so. [m/s]
 const CREEPS_MPS: f64 = 0.5;
 const NEARED_MPS: f64 = 1.2;
+
+/// What is no longer goes as fast as people walk. [m]
+const ROBOT_M: f64 = 0.8;
+
+/// Who drives side by side with the ego is hardly faster. [m/s]
+const SIDE_BY_SIDE_MPS: f64 = 0.6;
 
 /// Who merges in front of an ego that stops for it does so slowly. [m/s]
 const MERGES_MPS: f64 = 1.5;
@@ -83,6 +89,13 @@ impl Told {
         self.ahead == Some(true) && over && wheels && !slow && !passed && self.sv_aside().is_none()
     }
 
+    /// Whether the partner is told to have driven beside an ego that drives, and not to have come up to it, or to turn.
+    pub(crate) fn drives_abreast(&self) -> bool {
+        let drives =
+            |side: &Side| side.state == ContactState::Moving && side.turning == Turning::No && !side.stood_first;
+        self.layout.abreast && drives(&self.sv) && drives(&self.cp) && self.cp.impact_mps.is_none()
+    }
+
     /// No faster is an ego of which no speed is told, where one that comes from behind is told to run into it at one. [m/s]
     fn overtaken_mps(&self) -> f64 {
         let moves = matches!(self.sv.state, ContactState::Moving | ContactState::SettingOff);
@@ -119,6 +132,7 @@ impl Told {
                 PartnerKind::Pedestrian => WALKS_MPS,
                 PartnerKind::Animal => 4.0,
                 PartnerKind::FixedObject if slides => SLIDES_MPS,
+                PartnerKind::OtherNonMotorist if size_of(side).0 <= ROBOT_M => WALKS_MPS,
                 PartnerKind::Cyclist | PartnerKind::OtherNonMotorist => 4.5,
                 _ if side.turning != Turning::No => TURNS_MPS,
                 _ => driven_mps,
@@ -174,6 +188,7 @@ impl Told {
                     self.cp.speed_mps = self.cp.speed_mps.max(least).min(slower.max(0.4));
                 }
                 Origin::Beside { .. } if neared => self.cp.speed_mps = NEARED_MPS,
+                Origin::Beside { .. } if self.drives_abreast() => self.cp.speed_mps = sv + SIDE_BY_SIDE_MPS,
                 // Who turns beside an ego that turns is hardly faster.
                 Origin::Beside { .. } if self.sv.turning != Turning::No && self.cp.turning == self.sv.turning => {
                     self.cp.speed_mps = sv + ABREAST_MPS;

@@ -143,6 +143,7 @@ impl<'a> Bodies<'a> {
             (before, BEFORE_LANE),
             (face_on || along, FACE_ON),
             (swings, SWINGS),
+            (told.crosses_at_walk() && round > STRAIGHT_RAD, WALKS_ASKEW),
             (leaves, LEAVES),
             (told.goes_right_way(cp), RIGHT_WAY),
             (late, LATE),
@@ -176,6 +177,9 @@ const SWINGS_RAD: f64 = 0.35;
 
 /// Of who goes straight on beside an ego that turns, that it swings by more than this. [rad]
 const STRAIGHT_RAD: f64 = 0.15;
+
+/// Of who comes over a crosswalk, that it does not come straight.
+const WALKS_ASKEW: u32 = 1;
 
 /// Of an oncoming partner, that the ego, which turns, has not come to its lane.
 const BEFORE_LANE: u32 = 3;

@@ -70,9 +70,13 @@ impl Told {
         beside && self.leaves_its_lane() && drives(&self.sv) && drives(&self.cp) && other
     }
 
-    /// Whether the partner is told to pass, and to touch with its flank or its rear.
+    /// Whether the partner is told to pass; or to have begun to, or come by, and to touch with its flank or its rear.
     pub(super) fn rubs_by(&self) -> bool {
-        self.cp.acts.iter().any(Doing::is_pass)
+        let flank = |zone: &ContactZone| zone.is_rear() || matches!(zone, ContactZone::Left | ContactZone::Right);
+        let told = !self.cp.zones.is_empty() && self.cp.zones.iter().all(flank) && !self.goes_out();
+        let passes = |doing: &Doing| doing.is_pass() || told && doing.is_begun_pass();
+        let comes_by = self.cp.movement == Some(Movement::Passing) && self.sv.state.stands();
+        self.cp.acts.iter().any(passes) || told && comes_by && self.origin != Origin::Opposite
     }
 
     /// Whether the partner comes behind an ego that turns, by the same way.
@@ -100,7 +104,8 @@ impl Told {
 
     /// Whether a partner that has a signal or a sign on the crossing road, and goes straight on, is beside the lanes that lead there.
     pub(super) fn crosses_off_lanes(&self, ground: &Ground, cp: Pose) -> bool {
-        let own_way = !matches!(self.cp.movement, Some(Movement::WrongWay | Movement::Backing));
+        let own_way =
+            !self.crosses_at_walk() && !matches!(self.cp.movement, Some(Movement::WrongWay | Movement::Backing));
         let straight = self.cp.turning == Turning::No && self.cp.state != ContactState::Reversing && own_way;
         let lanes_m = ground.lanes as f64 * LANE_M;
         let told = straight && self.cp.control.is_some() && ground.junction;

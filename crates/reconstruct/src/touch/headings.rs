@@ -56,6 +56,9 @@ pub(super) fn headings(told: &Told, sv_heading: f64, behind: f64) -> Vec<Heading
     if told.backs_from_behind() {
         list.extend(REAR_TO_REAR_DEG.map(rad).map(|heading| (heading, heading)));
     }
+    if let (Some(turn), Origin::Cross { side }) = (told.turns_over_walk(), told.origin) {
+        list.extend(over_walk(turn, side));
+    }
     let along_kerb = !is_on_foot(told.cp.kind);
     list.extend(match told.origin {
         Origin::Behind | Origin::Ahead | Origin::Beside { .. } => along_the_road(told, sv_heading, behind),
@@ -168,6 +171,12 @@ fn crossing(told: &Told, side: LeftRight) -> Vec<Headings> {
         list.extend(turned(told, came));
     }
     list
+}
+
+/// Of who walks over the road that the ego turns into, from the told side of that.
+fn over_walk(turn: LeftRight, side: LeftRight) -> [Headings; 3] {
+    let came = (sign(turn) - sign(side)) * math::FRAC_PI_2;
+    [0.0, 10.0, -10.0].map(|off| (came, came + rad(off)))
 }
 
 /// The sides that somebody beside the road may come from, the likely one first. [1 is left, -1 right]

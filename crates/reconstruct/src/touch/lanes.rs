@@ -238,6 +238,10 @@ pub(super) fn bends(told: &Told, (ground, sv): (&Ground, Pose), cp: Pose, came: 
     // By its way, where it goes with an ego that turns.
     let with_ego = told.sv.turning != Turning::No && !matches!(told.origin, Origin::Opposite | Origin::Cross { .. });
     let with_ego = with_ego && !told.goes_straight_beside();
+    // Who comes over a crosswalk goes straight over it.
+    if told.crosses_at_walk() && told.cp.turning == Turning::No {
+        return (turn.abs() / STRAIGHT_RAD).ceil() as u32;
+    }
     let elsewhere = !told.comes_along_lanes() || told.drives_elsewhere() || told.comes_along_kerb();
     if elsewhere || with_ego || told.cp.state == ContactState::Reversing {
         return 0;

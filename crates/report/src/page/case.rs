@@ -79,6 +79,7 @@ fn head(case: Case, anchor: &str) -> Markup {
                     span.chip.odd title="the record's vehicle; in the test the system under test drives from the handover on" { "human at the contact" }
                 }
                 (parts::faithful_chip(row.telling_run().map(|run| &run.judgement), row.origin.as_ref()))
+                (parts::review_chip(row.review.as_ref()))
                 @match row.situation_met() { Some(true) => span.chip.none { "situation met" }, Some(false) => span.chip.odd { "situation not met" }, None => "" }
                 @if row.account.is_some() && row.found_by_tuning() { (parts::tuning_chip()) }
                 @for kind in last.map(|run| run.finding_kinds()).unwrap_or_default() { (parts::finding_chip(kind)) }

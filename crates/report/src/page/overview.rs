@@ -34,7 +34,7 @@ pub fn section(context: &Context) -> Markup {
             @if let Some(corpus) = &suite.corpus { details.fold { summary { "What of the corpus is covered" } (corpus::corpus(corpus)) } }
             h2 { "Scenarios" @if suite.accounts.is_some() { ", the worst first" } }
             noscript { p.banner { "A scenario opens with scripts only. This table, results.csv and the scenario files of the suite need none." } }
-            @if suite.cases.is_empty() { p.empty { "The suite has no scenario." } } @else { (controls(suite.accounts.is_some())) (table(context)) }
+            @if suite.cases.is_empty() { p.empty { "The suite has no scenario." } } @else { (controls(suite.accounts.is_some(), suite.cases.iter().any(|case| case.review.is_some()))) (table(context)) }
             .two {
                 div { h3 { "Make this suite again" } (parts::command(&suite.command)) }
                 div {
@@ -243,7 +243,7 @@ const SORTS: [(&str, &str); 12] = [
     ("faithful", "True to its record"),
 ];
 
-fn controls(accounts: bool) -> Markup {
+fn controls(accounts: bool, reviewed: bool) -> Markup {
     let by_template = [
         ("all", "All"),
         ("failed", "Fails"),
@@ -273,7 +273,13 @@ fn controls(accounts: bool) -> Markup {
         ("refused", "Refused"),
         ("edited", "Edited"),
     ];
-    let filters: &[(&str, &str)] = if accounts { &by_account } else { &by_template };
+    let mut filters = if accounts { by_account.to_vec() } else { by_template.to_vec() };
+    if reviewed {
+        filters.extend([
+            ("reviewed-right", "Read beside its report: right"),
+            ("reviewed-wrong", "Read beside its report: wrong"),
+        ]);
+    }
     // Of a suite that goes by accounts the worst come first; the paper's has its own order.
     let sorted = if accounts { "worst" } else { "order" };
     html! {
@@ -376,6 +382,7 @@ fn row(context: &Context, position: usize, case: &CaseRow) -> Markup {
             td.ego { (ego(case, not_run)) }
             td.true {
                 (parts::faithful_chip(case.telling_run().map(|run| &run.judgement), case.origin.as_ref()))
+                @if case.review.is_some() { " " (parts::review_chip(case.review.as_ref())) }
                 @if case.situation_met() == Some(false) { " " span.chip.odd { "situation not met" } }
             }
         }

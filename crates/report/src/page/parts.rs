@@ -7,6 +7,7 @@ use maud::{Markup, html};
 use recrash_model::metrics::{Answer, Check, CheckResult, FindingKind, Timed};
 use recrash_model::narrative::Origin;
 use recrash_model::record::RecordRef;
+use recrash_model::review::ReviewBy;
 use recrash_model::run::Judgement;
 use recrash_model::triage::FailureClass;
 
@@ -75,6 +76,18 @@ pub fn faithful_chip(run: Option<&Judgement>, origin: Option<&Origin>) -> Markup
         Answer::Yes => html! { span.chip.good { "faithful" } },
         Answer::Unchecked => html! { span.chip.odd { "unchecked" } (listed(run.verdict.unchecked().collect())) },
         Answer::No => html! { span.chip.bad { "not faithful" } (listed(run.verdict.failures().collect())) },
+    }
+}
+
+/// What a model finds that read the replay beside its report.
+pub fn review_chip(review: Option<&ReviewBy>) -> Markup {
+    let told = |by: &ReviewBy| format!("read beside its report by {}", words::clean(&by.model, 80));
+    html! {
+        @match review {
+            None => "",
+            Some(by) if by.review.is_right() => span.chip.good title=(told(by)) { "read: right" },
+            Some(by) => span.chip.bad title=(told(by)) { "read: wrong" },
+        }
     }
 }
 

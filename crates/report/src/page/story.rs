@@ -5,6 +5,7 @@ use crate::words::{self, LONGEST_TEXT};
 use maud::{Markup, html};
 use recrash_model::narrative::{Fact, FactSource, Narrative};
 use recrash_model::record::{CrashRecord, RecordRef};
+use recrash_model::review::{LONGEST_NOTE, ReviewBy};
 use std::ops::Range;
 
 /// Members of the cluster named besides those shown. [count]
@@ -29,6 +30,7 @@ pub fn story(case: Case) -> Markup {
             }
             div {
                 h2 { "Records" }
+                @if let Some(by) = &row.review { (reviewed(by)) }
                 @if shown.is_empty() { p.empty { "The suite names no record." } }
                 @for (order, record) in shown.iter().enumerate() { (record_panel(record, facts, order == 0)) }
                 @if !others.is_empty() {
@@ -38,6 +40,17 @@ pub fn story(case: Case) -> Markup {
                     }
                 }
             }
+        }
+    }
+}
+
+/// What a language model finds that held the replay against these records.
+fn reviewed(by: &ReviewBy) -> Markup {
+    let wrong: Vec<&str> = by.review.wrong().collect();
+    html! {
+        p.review { "Read beside its report by " b { (words::clean(&by.model, 80)) } ": "
+            @if wrong.is_empty() { "the recorded driver's run shows it." }
+            @else { "the recorded driver's run does not show it (" (wrong.join(", ")) "): " span dir="auto" { (words::clean(&by.review.note, LONGEST_NOTE)) } }
         }
     }
 }

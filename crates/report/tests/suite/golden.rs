@@ -1,6 +1,7 @@
 //! JUnit and CSV of made-up cases: fails as designed, another record's, nobody's crash and edited, tuned to fail, not faithful,
 //! refused.
 
+use crate::hostile::wrong;
 use crate::suite;
 use recrash_model::cause::Cause;
 use recrash_model::preventability::Preventability;
@@ -14,6 +15,7 @@ fn some_cases() -> SuiteView {
     let failed = suite.cases[0].before.as_mut().expect("it was run");
     failed.judgement.cause = Some(Cause::BrakedLate);
     failed.judgement.preventability = Some(Preventability { closing_speed_mps: 5.0, drivers: Vec::new() });
+    suite.cases[0].review = Some(wrong("m", "=told is a lane change, shown is none"));
     suite.cases[1].edited = vec!["4-scenarios/06-intersection-straight-left.json".to_owned()];
     suite
 }

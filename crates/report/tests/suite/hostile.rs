@@ -4,12 +4,21 @@ use crate::suite::{self, Demo};
 use recrash_model::metrics::Timed;
 use recrash_model::narrative::{FactSource, Origin};
 use recrash_model::record::Coded;
+use recrash_model::review::{Review, ReviewBy, Shown};
 use recrash_model::run::Judgement;
 use recrash_report::{
     CaseRow, CaseView, RunRow, RunView, SuiteView, case_file, case_file_name, html, junit, results_csv,
 };
 
 const HOSTILE: &str = "</script></style></title><img src=x onerror=alert(1)><!--\" ' ` ../../etc/passwd {{7*7}} ]]> \u{202e}\u{1f697} \u{0} &lt;b&gt;";
+
+/// A review by this model that finds a movement otherwise than told.
+pub(super) fn wrong(model: &str, note: &str) -> ReviewBy {
+    let yes = Shown::Yes;
+    let (who, side, order, standstill, striker, zones) = (yes, yes, Shown::Untold, yes, yes, yes);
+    let review = Review { who, side, movements: Shown::No, order, standstill, striker, zones, note: note.to_owned() };
+    ReviewBy { model: model.to_owned(), review }
+}
 
 /// The made-up suite with hostile text in every place that can hold text.
 fn hostile() -> Demo {
@@ -59,6 +68,7 @@ fn hostile() -> Demo {
         row.origin = Some(Origin::Invented { reason: HOSTILE.to_owned() });
         row.told = Some(ids[row.records[0]].clone());
         row.edited = vec![HOSTILE.to_owned()];
+        row.review = Some(wrong(HOSTILE, &long));
         for run in row.before.iter_mut().chain(&mut row.after) {
             run.rerun_command = HOSTILE.to_owned();
             spoil_judgement(&mut run.judgement);

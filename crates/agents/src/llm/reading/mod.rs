@@ -259,7 +259,9 @@ fn contradictions(account: &Account) -> Vec<String> {
     let fits = match (crash_type, told(&account.came_from)) {
         (Some(CrashType::FrontToRear), Some(from)) => !matches!(from, Origin::Opposite | Origin::Cross { .. }),
         // Who turned out of a crossing road may meet the other head-on, or along its flank.
-        (Some(CrashType::HeadOn), Some(from)) => !matches!(from, Origin::Behind | Origin::Beside { .. } | Origin::Above),
+        (Some(CrashType::HeadOn), Some(from)) => {
+            !matches!(from, Origin::Behind | Origin::Beside { .. } | Origin::Above)
+        }
         (Some(CrashType::Lateral), Some(from)) => !matches!(from, Origin::Opposite),
         _ => true,
     };

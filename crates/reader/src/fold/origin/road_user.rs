@@ -14,6 +14,7 @@ use super::places::{
 use super::{Clues, changed_from, first_relation, lane_side, relation_to};
 use crate::chunk::Joint;
 use crate::fold::Reading;
+use crate::fold::controls::turns_on_red;
 use crate::fold::party::has_zone;
 use crate::fold::types::{turn_side, turning};
 use crate::frame::Frame;
@@ -21,8 +22,8 @@ use crate::lexicon::{Relation, Sense};
 use crate::token::{Token, TokenKind};
 use crate::world::{Actor, SUBJECT};
 use recrash_model::account::{
-    Account, Act, ActFact, Compass, ContactState, Fact, KindGroup, LaneWord, LeftRight, Origin, Party, RoadFeature,
-    Source, told,
+    Account, Act, ActFact, Compass, ContactState, Fact, Kind, KindGroup, LaneWord, LeftRight, Origin, Party,
+    RoadFeature, Source, told,
 };
 use recrash_model::zones::ContactZone as Z;
 
@@ -52,7 +53,7 @@ struct Case<'a> {
 type Told = Option<Fact<Origin>>;
 type Rule = fn(&Case<'_>) -> Told;
 
-const RULES: [Rule; 41] = [
+const RULES: [Rule; 42] = [
     |case| case.thrown_at_the_rear(),
     |case| case.out_of_a_place(),
     |case| case.stood_in_a_stall(),
@@ -66,6 +67,7 @@ const RULES: [Rule; 41] = [
     |case| case.leaves_the_kerb(),
     |case| case.goes_over_from_the_kerb(),
     |case| case.backs_from_a_named_kerb(),
+    |case| case.comes_on_green(),
     |case| case.moves_over_from_behind(),
     |case| case.behind_in_the_lane_it_goes_to(),
     |case| case.comes_from_behind(),
@@ -96,6 +98,9 @@ const RULES: [Rule; 41] = [
     |case| case.is_rear_ended(),
 ];
 
+/// So many words after a verb tell that it was green, at most: "coming straight through from the left on green". [tokens]
+const ON_GREEN_WITHIN: usize = 9;
+
 /// From where a road user comes.
 pub(super) fn of_road_user(clues: &Clues<'_>, account: &Account) -> Told {
     let case = Case::new(clues, account)?;
@@ -116,6 +121,16 @@ fn is_being_completed(reading: &Reading<'_>, fact: &ActFact) -> bool {
     let ing = ["completing", "finishing"].iter().any(|word| text.starts_with(word));
     let frame = || reading.story.frames.iter().find(|frame| reading.story.tokens[frame.first].start == *start);
     ing && frame().is_none_or(|frame| frame.joint != Some(Joint::After))
+}
+
+/// "coming along the road from the right", "went through on green from its left"; "the second lane from the right" is a lane.
+fn comes_from_side(words: &[&str]) -> bool {
+    let counts = |word: &str| matches!(word, "second" | "third" | "fourth" | "lane" | "lanes");
+    (0..words.len()).any(|at| {
+        let side = matches!(words[at..], ["from", "the" | "its", "left" | "right", ..]);
+        let lane = words.get(at + 3).is_some_and(|word| counts(word)) || at > 0 && counts(words[at - 1]);
+        side && !lane
+    })
 }
 
 fn is_flank(zone: Z) -> bool {
@@ -577,18 +592,12 @@ impl<'a> Case<'a> {
         if crossing { self.across(side) } else { None }
     }
 
-    /// "A taxi from the right entered the intersection"; "the second lane from the right" is a lane.
+    /// "A taxi from the right entered the intersection", "a taxi was going through from the right"; "the second lane from the right" is a lane.
     fn comes_into_it(&self, frame: &Frame) -> bool {
         let sentence = self.reading.story.sentences[frame.sentence];
         let words: Vec<&str> =
             self.reading.story.tokens[sentence.first..sentence.end].iter().map(|token| token.text.as_str()).collect();
-        let counts = |word: &str| matches!(word, "second" | "third" | "fourth" | "lane" | "lanes");
-        let from = (0..words.len()).any(|at| {
-            let side = matches!(words[at..], ["from", "the" | "its", "left" | "right", ..]);
-            let lane = words.get(at + 3).is_some_and(|word| counts(word)) || at > 0 && counts(words[at - 1]);
-            side && !lane
-        });
-        from && words.iter().any(|word| matches!(*word, "intersection" | "junction"))
+        comes_from_side(&words) && words.iter().any(|word| matches!(*word, "intersection" | "junction" | "through"))
     }
 
     /// "traveling from left to right", "came at a right angle from its left", "coming along the road from the right".
@@ -603,9 +612,7 @@ impl<'a> Case<'a> {
                 words.windows(2).any(|pair| pair == ["right", "angle"] || pair == ["right", "angles"])
                     || words.windows(3).any(|row| matches!(row, ["left", "to", "right"] | ["right", "to", "left"]))
                     || words.contains(&"perpendicular")
-                    || words
-                        .windows(4)
-                        .any(|row| matches!(row, ["road" | "street", "from", "the" | "its", "left" | "right"]))
+                    || comes_from_side(&words)
             })
     }
 
@@ -640,7 +647,8 @@ impl<'a> Case<'a> {
             return None;
         }
         let group = told(&self.partner.kind).map(|kind| kind.group());
-        let walks = matches!(group, Some(KindGroup::OnFoot | KindGroup::Animal));
+        let robot = told(&self.partner.kind) == Some(Kind::DeliveryRobot);
+        let walks = matches!(group, Some(KindGroup::OnFoot | KindGroup::Animal)) || robot;
         if walks { self.across(side) } else { self.beside(side) }
     }
 
@@ -657,6 +665,18 @@ impl<'a> Case<'a> {
     fn passes(&self) -> Told {
         let passes = self.did(Act::Pass) && passes_subject(self.reading, self.actor);
         passes.then(|| Fact::by_rule(Origin::Behind, "who passes comes from behind"))
+    }
+
+    /// "It turned right on red, and a car that came through on the green struck it": along the crossing road, from its left.
+    fn comes_on_green(&self) -> Told {
+        let tokens = &self.reading.story.tokens;
+        let green = |frame: &Frame| {
+            let words = &tokens[frame.first..self.reading.story.sentences[frame.sentence].end];
+            words.iter().take(ON_GREEN_WITHIN).any(|token| token.text == "green")
+        };
+        let comes = self.frames().any(|(_, frame)| frame.act().is_some() && frame.happened() && green(frame));
+        let told = comes && turn_side(self.partner).is_none() && turns_on_red(self.reading);
+        told.then(|| Fact::by_rule(Origin::Cross { side: LeftRight::Left }, "at green, where it turned at red"))
     }
 
     fn by_lanes(&self) -> Told {
