@@ -241,6 +241,9 @@ pub struct Other {
     /// Over which line of the road its body reaches, who is partly in one lane and partly elsewhere.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub astride: Option<Fact<Astride>>,
+    /// Who came out from behind it, or from between several of it, could not be seen for it before.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub hides: bool,
     /// It touched the partner, or the partner it, before the contact with the subject vehicle.
     pub touched_partner: bool,
     /// How, where that is told.

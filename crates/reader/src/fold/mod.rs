@@ -9,6 +9,7 @@ mod controls;
 mod driver;
 mod entry;
 mod flashback;
+mod hides;
 mod lanes;
 mod movement;
 mod nobody;
@@ -537,6 +538,7 @@ fn others(reading: &Reading<'_>) -> Vec<Other> {
             several: known.several,
             acts: nominal::waits_to_cross(reading, actor, acts::stood_alongside(reading, actor, acts)),
             astride: astride::astride(reading, actor),
+            hides: hides::hides(reading, actor, (first, end)),
             touched_partner,
             touch: touch.and_then(|frame| touched::earlier(reading, frame)),
         });

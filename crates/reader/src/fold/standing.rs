@@ -10,7 +10,7 @@ use super::speeds::is_of_last_contact;
 use super::{Reading, flashback, nominal};
 use crate::chunk::Joint;
 use crate::frame::Frame;
-use crate::lexicon::{Form, Lexicon, Meaning, Part, Progress, Relation, Sense};
+use crate::lexicon::{COMPANY, Form, Lexicon, Meaning, Part, Progress, Relation, Sense};
 use crate::token::Token;
 use crate::world::{Actor, SUBJECT};
 use recrash_model::account::{Act, ContactState, Fact, Kind, KindGroup, SignalState, StandReason, Standing};
@@ -338,6 +338,7 @@ pub(super) fn reasons(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<StandReas
             // "behind a van that was letting out passengers": why the van stood.
             let of_queue = begins + at >= own && !matches!(reason, StandReason::RedLight | StandReason::Queue);
             let of_queue = of_queue || is_of_another(tokens, begins + at, reason);
+            let of_queue = of_queue || reason == StandReason::Queue && is_behind_it(tokens, begins + at + length);
             if !place
                 && !not_red
                 && !of_queue
@@ -428,6 +429,18 @@ fn is_of_another(tokens: &[Token], at: usize, reason: StandReason) -> bool {
     let kind = |at: usize| Lexicon::get().longest(tokens, at, |meaning| matches!(meaning, Meaning::Kind(_))).is_some();
     let ing = tokens[at].text.ends_with("ing");
     reason == StandReason::PickupDropoff && ing && at.checked_sub(1).is_some_and(kind)
+}
+
+/// "was stopped at a red light with a line of vehicles behind it": it stands in no queue for that. The token behind "line of".
+fn is_behind_it(tokens: &[Token], end: usize) -> bool {
+    let word = |at: usize| tokens.get(at).map_or("", |token| token.text.as_str());
+    let several = matches!(word(end), "vehicles" | "cars" | "traffic" | "trucks");
+    let at = end + usize::from(several);
+    let own = matches!(
+        (word(at + 1), word(at + 2)),
+        ("it" | "them", _) | ("the", "av" | "vehicle" | "subject" | "ego" | COMPANY)
+    );
+    word(at) == "behind" && own
 }
 
 /// "stopped for a paramedic on foot": why, by whom it stops for.

@@ -391,7 +391,9 @@ impl Parser<'_> {
                 "sidewalk" | "side" | "curb" | "corner" | "crosswalk" | "leg" | "end" | "shoulder"
             )
         });
-        if place {
+        // "blocking the view toward the west": a way to look.
+        let before = &self.tokens[placed.first.saturating_sub(4)..placed.first];
+        if place || before.iter().any(|token| matches!(token.text.as_str(), "view" | "sight" | "visibility")) {
             return;
         }
         // "at the junction with the westbound Route 9", "drove across the westbound lanes": not its own.

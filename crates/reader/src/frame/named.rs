@@ -48,6 +48,10 @@ impl Parser<'_> {
             (carry.preposition, carry.relation) = (None, None);
             return true;
         }
+        // "The line of cars ahead came to a halt": those who stand in it did.
+        if carry.preposition == Some("of") && carry.frame.is_none() && self.begins_with_row(placed.first) {
+            (carry.preposition, carry.governed) = (None, false);
+        }
         let hint = relation_behind(all, at);
         if let Some(actor) = self.apposed(noun, all, at, carry) {
             self.world.describe(actor, noun, tokens);
@@ -105,6 +109,14 @@ impl Parser<'_> {
         let person = noun.occupant.map(|(who, _)| who);
         self.mention(Mention { actor, piece: None, person, end: placed.end }, placed, carry, next);
         false
+    }
+
+    /// "The line of cars", "and a row of vans": a noun behind "of" that a clause begins with.
+    fn begins_with_row(&self, first: usize) -> bool {
+        let word = |back: usize| first.checked_sub(back).map_or(".", |at| self.tokens[at].text.as_str());
+        let row = matches!(word(2), "line" | "row" | "queue" | "column" | "string" | "stream") && word(1) == "of";
+        let begins = matches!(word(4), "." | "," | "and" | "when" | "while" | "as" | "because" | "since" | "but");
+        row && matches!(word(3), "a" | "the") && begins
     }
 
     /// "At low speed it moved", "Near the junction the van braked": nothing but an adverb stands between a preposition and what it governs.

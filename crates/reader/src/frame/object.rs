@@ -31,7 +31,8 @@ impl Parser<'_> {
             "off" if !self.frames[frame].is_contact() => {}
             // "came out from behind a van", "from between two vans".
             "behind" | "between"
-                if matches!(self.frames[frame].act(), Some(Act::Enter | Act::Cross | Act::PullOut)) =>
+                if matches!(self.frames[frame].act(), Some(Act::Enter | Act::Cross | Act::PullOut))
+                    || self.comes_from_behind(frame, mention) =>
             {
                 self.frames[frame].object.get_or_insert(mention.actor);
             }
@@ -70,6 +71,15 @@ impl Parser<'_> {
             }
             _ => {}
         }
+    }
+
+    /// "came from behind the truck", of another than the subject vehicle: nobody sees it before.
+    fn comes_from_behind(&self, frame: usize, mention: &Mention) -> bool {
+        let taken = &self.frames[frame];
+        let from = self.tokens.get(taken.end.saturating_sub(1)..taken.end + 2).unwrap_or_default();
+        let from = from.windows(2).any(|pair| pair[0].text == "from" && pair[1].text == "behind");
+        let others = mention.actor != SUBJECT && taken.who != Some(SUBJECT) && taken.who != Some(mention.actor);
+        taken.act() == Some(Act::Follow) && from && others
     }
 
     /// "proceeded slowly past two workers", "steered around the truck".

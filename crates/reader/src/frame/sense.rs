@@ -283,7 +283,11 @@ fn stands_backed_up(parser: &Parser<'_>, verb: &Spoken<'_>, carry: &Carry) -> Op
     let backed = verb.sense == Sense::Act(Act::Reverse) && verb.form == Form::Past && verb.word(parser) == "backed";
     let remains = matches!(verb.chunk_before(), Some(Chunk::Verb(Sense::Act(Act::Hold), _)));
     let next = parser.tokens.get(placed.end).map_or("", |token| token.text.as_str());
-    let away = matches!(next, "out" | "into" | "from") || !single(placed) && parser.tokens[placed.end - 1].text != "up";
+    let up = parser.tokens[placed.end - 1].text == "up";
+    // "Northbound traffic was backed up from the next light."
+    let several = carry.subject.as_ref().is_some_and(|subject| parser.world.actors[subject.actor].several);
+    let from = next == "from" && !(up && several && carry.be);
+    let away = matches!(next, "out" | "into") || from || !single(placed) && !up;
     // "in backed-up traffic".
     let adjective = backed && matches!(next, "traffic" | "vehicles" | "cars") && carry.preposition.is_some();
     (backed && (carry.be || remains) && !away || adjective).then_some(Sense::Other)

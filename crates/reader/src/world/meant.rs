@@ -234,13 +234,15 @@ impl World {
         (more.is_none() && !known.several && !known.announced && sought.hint.is_none()).then_some(only)
     }
 
-    /// "Parked cars": a group, the one that was named or a new one.
+    /// "Parked cars": a group, the one that was named or a new one. "The parked cars" are not "a line of cars behind it".
     fn group(&mut self, sought: &Sought<'_>) -> Option<Meant> {
-        if !sought.noun.several || sought.noun.article != Article::None {
+        let parked = sought.has(Adjective::Parked);
+        let definite = sought.is_definite() && parked;
+        if !sought.noun.several || sought.noun.article != Article::None && !definite {
             return None;
         }
         // Traffic that comes is not what is parked there.
-        let as_parked = |known: &Known| known.parked || !sought.has(Adjective::Parked);
+        let as_parked = |known: &Known| known.parked || !parked || definite && known.relations.is_empty();
         Some(
             self.latest(|known| known.several && sought.fits(known) && as_parked(known))
                 .map_or(Meant::New, Meant::Known),

@@ -118,6 +118,8 @@ pub fn facts(account: &Account) -> BTreeMap<&'static str, String> {
         .collect();
     let other_lines: Vec<String> =
         account.others.iter().filter_map(|other| Some(coded(&other.astride.as_ref()?.value.line))).collect();
+    let hiding: Vec<String> =
+        account.others.iter().filter(|other| other.hides).map(|other| coded(&other.kind.value)).collect();
     let matrix =
         account.matrix.as_ref().map(|fact| format!("{} {}", coded(&fact.value.object), coded(&fact.value.event)));
     let ran = partner.did(Act::RunRed) || partner.did(Act::RunStop);
@@ -149,6 +151,7 @@ pub fn facts(account: &Account) -> BTreeMap<&'static str, String> {
         ("others", others.join(" ")),
         ("other_places", other_places.join(" ")),
         ("other_acts", other_acts.join(" ")),
+        ("hiding", hiding.join(" ")),
         ("sv_lane", name(&sv.lane)),
         ("sv_astride", sv.astride.as_ref().map(over).unwrap_or_default()),
         ("cp_astride", partner.astride.as_ref().map(over).unwrap_or_default()),

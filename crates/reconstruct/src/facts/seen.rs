@@ -10,7 +10,7 @@ use crate::told::queue::{leaves_lane, waits_ahead};
 use crate::told::side::Turning;
 use crate::usual::{LANE_M, STANDS_MPS};
 use recrash_model::account::{ContactState, Kind, LeftRight, Origin, StandReason};
-use recrash_model::geometry::Vec2;
+use recrash_model::geometry::{OrientedBox, Pose, Vec2};
 use recrash_model::kinds::PartnerKind;
 use recrash_model::math;
 use recrash_model::rollout::{ActorTrack, EventKind, Rollout};
@@ -49,6 +49,9 @@ const BESIDE_LANES: f64 = 2.4;
 
 /// Whom the ego stands for while it comes comes so much nearer then; and who passes between two is no farther before them. [m]
 const COMES_M: f64 = 2.0;
+
+/// A line of sight is so wide. [m]
+const SIGHT_M: f64 = 0.1;
 
 /// A rollout, and when the two touch.
 pub(crate) struct Seen<'a> {
@@ -194,6 +197,7 @@ impl<'a> Seen<'a> {
                 Role::Kerb => self.is_parked(track) && self.is_on_side(extra, track),
                 Role::Obstacle => self.is_passed(extra, track),
                 Role::Passed => self.partner_passes(extra, track),
+                Role::Screen => self.hides(track),
                 Role::Merger => self.merges(extra, track),
                 Role::Blocker => self.blocks(track, true),
                 Role::Beyond => self.blocks(track, false),
@@ -406,6 +410,19 @@ impl<'a> Seen<'a> {
         let slower = Self::mps(track, self.until) + SLOWED_MPS < Self::mps(partner, self.until);
         let pace = if extra.slow { !self.stays(track) && slower } else { self.stays(track) };
         pace && (in_line || by) && (at - met).length() < PARKED_M
+    }
+
+    /// Whether somebody stands all the time, and between the ego and the partner before they touch.
+    fn hides(&self, track: &ActorTrack) -> bool {
+        let Some(partner) = self.rollout.actors.iter().find(|track| track.id == "cp") else { return false };
+        let outline = OrientedBox::new(track.states[0].pose(), track.length_m, track.width_m);
+        let hidden = |step: usize| {
+            let at = self.ego.states[step].position();
+            let way = partner.states[step.min(partner.states.len() - 1)].position() - at;
+            let middle = Pose { position: at + way * 0.5, heading: math::atan2(way.y, way.x) };
+            outline.overlaps(&OrientedBox::new(middle, way.length(), SIGHT_M))
+        };
+        self.stays(track) && (0..self.until).any(hidden)
     }
 
     /// Whether somebody was beside the ego's lane, on the told side, and is in it ahead of the ego at the contact.

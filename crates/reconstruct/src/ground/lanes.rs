@@ -15,7 +15,12 @@ use recrash_model::zones::ContactZone;
 /// towards the ego.
 pub(super) fn is_one_way(told: &Told) -> bool {
     let drives = |near: Near| near.place == Some(Origin::Opposite) && near.does != Does::Stands;
-    let oncoming = |extra: &Extra| extra.role == Role::Oncoming || extra.near.is_some_and(drives);
+    // From between those who wait in the lane towards it somebody comes out.
+    let queues = |extra: &Extra| {
+        let opposite = extra.opposite || extra.near.is_some_and(|near| near.place == Some(Origin::Opposite));
+        extra.hides && opposite
+    };
+    let oncoming = |extra: &Extra| extra.role == Role::Oncoming || queues(extra) || extra.near.is_some_and(drives);
     let left = matches!(told.origin, Origin::Parked { side: Some(LeftRight::Left) });
     left && !told.faces && !told.wanted.iter().any(oncoming) || told.leaves_left_kerb()
 }
@@ -68,7 +73,12 @@ pub(super) fn usual_lane(told: &Told, lanes: usize, one_way: bool) -> usize {
         _ if one_way => 0,
         _ if told.sv.is_over(LaneLine::Centre) || told.cp.is_over(LaneLine::Centre) => 0,
         _ if told.edge == Some(LeftRight::Left) || told.layout.left_to_come || told.is_met_over_line() => 0,
-        2.. if told.edge.is_none() && (to_right || passes_right(told) || told.is_beside_other(LeftRight::Right)) => {
+        2.. if told.edge.is_none()
+            && (to_right
+                || passes_right(told)
+                || told.is_beside_other(LeftRight::Right)
+                || told.is_hidden_on_right()) =>
+        {
             lanes - 2
         }
         _ => lanes - 1,
@@ -125,7 +135,8 @@ fn passes_right(told: &Told) -> bool {
     let goes = goes && moves && told.cp.aside == Some(LeftRight::Right) && !told.is_at_kerb();
     let by = moves && told.sv.zones.iter().any(touched) || passes || goes;
     // Who comes across on foot needs no lane there, nor who is narrow, and comes by between the ego and the kerb.
-    let squeezes = told.layout.along_kerb && size_of(&told.cp).1 < NARROW_M;
+    let between = told.wanted.iter().any(|extra| extra.between);
+    let squeezes = told.layout.along_kerb && size_of(&told.cp).1 < NARROW_M && !between;
     let drives = !told.comes_across() && !squeezes;
     in_lane && drives && matches!(told.origin, Origin::Beside { side: LeftRight::Right })
         || in_lane && !squeezes && told.origin == Origin::Behind && by
@@ -144,6 +155,12 @@ impl Told {
         let opposing = self.origin == Origin::Opposite || lanes.contains(&Some(LaneWord::Opposing));
         let over = [self.sv.movement, self.cp.movement].contains(&Some(Movement::CrossingIntoOpposingLane));
         self.layout.one_way && !opposing && !over && !has(self, Role::Oncoming)
+    }
+
+    /// Whether one that stands hides a partner that comes from the right: in the next lane.
+    fn is_hidden_on_right(&self) -> bool {
+        let right = self.comes_from_side() == Some(LeftRight::Right) && self.sv.turning == Turning::No;
+        right && self.wanted.iter().any(|extra| extra.role == Role::Screen)
     }
 
     /// Whether another vehicle drives in the lane beside an ego that keeps its own, or comes over from there.

@@ -5,7 +5,9 @@ use crate::facts::seen::Seen;
 use crate::ground::pieces::corner_m;
 use crate::nearby::hinders::{CLEAR_M, hinders_nobody};
 use crate::nearby::scene::Scene;
+use crate::others::beside::HIDES_M;
 use crate::told::others::{Extra, Role};
+use crate::told::side::size_of;
 use recrash_model::account::LeftRight;
 use recrash_model::geometry::Vec2;
 use recrash_model::kinds::PartnerKind;
@@ -49,8 +51,19 @@ impl Scene<'_> {
                 .then(|| (scenario.draft().clone(), driven))
         };
         let other_side = self.at_other_kerb(extra, draft, actor);
+        let beyond = self.beyond_gap(extra, actor).and_then(|by| shifted(&actor.plan, by));
         let beside = offsets(actor)?.into_iter().filter_map(|by| shifted(&actor.plan, by));
-        other_side.into_iter().chain(beside).find_map(place)
+        beyond.into_iter().chain(other_side).chain(beside).find_map(place)
+    }
+
+    /// "came out from between two parked vans": from the first one, which stands short of where the partner comes out, to the second beyond that.
+    fn beyond_gap(&self, extra: &Extra, actor: &Actor) -> Option<Vec2> {
+        let between = extra.hides && matches!(extra.role, Role::Kerb | Role::Screen);
+        let at = point(&actor.plan.start).filter(|_| between && actor.plan.speed_mps == 0.0)?;
+        let (s_m, t_m) = self.ground.beside(at);
+        let gap_m = size_of(&self.told.cp).1.max(1.0) + 2.0 * HIDES_M;
+        let on_m = length_m(actor) + gap_m;
+        Some(self.ground.pose(s_m + on_m, t_m).position - self.ground.pose(s_m, t_m).position)
     }
 
     /// "vehicles parked at both curbs": where one stands at one kerb alone, the second is at the other one first.

@@ -13,6 +13,9 @@ use recrash_model::rollout::Rollout;
 use recrash_model::scenario::{Actor, ActorPlan};
 use recrash_model::vehicle::VehicleSpec;
 
+/// An animal that goes with somebody on foot is so much ahead of that. [s]
+const LEADS_S: f64 = 1.0;
+
 /// Those who have a part in what the ego does, on the road; `alone`: the crash without them.
 pub(crate) fn actors(told: &Told, staging: &Staging, recorded: &ActorPlan, alone: &Rollout) -> Vec<Actor> {
     let ego = alone.ego_track();
@@ -47,6 +50,7 @@ impl Scene<'_> {
             Role::Walker if extra.stays => vec![self.stays_close(extra)],
             Role::Walker if kind == PartnerKind::Pedestrian => vec![self.crosses(extra, WALKS_MPS, self.clears_s())],
             Role::Walker => vec![self.crosses(extra, RIDES_MPS, self.clears_s())],
+            Role::Animal if extra.led => vec![self.crosses(extra, WALKS_MPS, self.clears_s() - LEADS_S)],
             Role::Animal => vec![self.runs(extra)],
             Role::Crosser => self.crosser(extra).into_iter().collect(),
             Role::Oncoming => self.oncoming().into_iter().collect(),
@@ -55,6 +59,7 @@ impl Scene<'_> {
             Role::Passed => self.passed(extra, length_m).into_iter().collect(),
             Role::Blocker => self.blocker(length_m).into_iter().collect(),
             Role::Beyond => self.beyond(length_m).into_iter().collect(),
+            Role::Screen => self.screen(extra, length_m).into_iter().collect(),
             Role::Merger => vec![self.merger(extra, length_m)],
             Role::Beside if extra.between => vec![self.passed_between(extra, (length_m, width_m))],
             Role::Beside => vec![self.stands_beside(extra, length_m)],

@@ -29,7 +29,7 @@ const BEYOND_M: f64 = 160.0;
 const STEADY_MPS: f64 = 2.0;
 
 /// Who hides somebody who comes across stands so far short of it; the sine of the least angle across. [m, -]
-const HIDES_M: f64 = 0.8;
+pub(crate) const HIDES_M: f64 = 0.8;
 const ACROSS: f64 = 0.7;
 
 impl Scene<'_> {
@@ -41,8 +41,12 @@ impl Scene<'_> {
         let is = |strips: &[Strip], kind: StripKind| strips.iter().any(|strip| strip.kind == kind);
         let stalls = is(right, StripKind::Stalls);
         let has = |strips: &[Strip]| is(strips, StripKind::Parking) || is(strips, StripKind::Stalls);
-        // Whom it passes is abreast of its front.
-        let far_m = if extra.passed { 0.0 } else { PARKED_AHEAD_M + 0.5 * length_m };
+        // Whom it passes is abreast of its front; between whom and the ego the partner passes is abreast of that.
+        let far_m = match (extra.passed, self.told.layout.along_kerb) {
+            (true, _) => 0.0,
+            (false, true) => -self.front_m(),
+            (false, false) => PARKED_AHEAD_M + 0.5 * length_m,
+        };
         let ahead_m = self.at(self.until).0 + self.front_m() + far_m;
         // Nobody is parked in a junction.
         let before_m = if self.ground.junction { self.ground.first_m() - PARKED_AHEAD_M } else { f64::INFINITY };
@@ -136,10 +140,30 @@ impl Scene<'_> {
     }
 
     /// Who hides a partner that comes across stands short of where that comes out. [m]
-    fn hides_m(&self, t_m: f64, length_m: f64) -> Option<f64> {
+    pub(super) fn hides_m(&self, t_m: f64, length_m: f64) -> Option<f64> {
         let (partner_m, wide_m) = size_of(&self.told.cp);
         let half_m = 0.5 * partner_m.min(wide_m.max(1.0));
         Some(self.crossing_m(t_m)? - half_m - HIDES_M - 0.5 * length_m)
+    }
+
+    /// Who hides a partner that comes across stands in the next lane on its side, where no lane is there at the kerb, short of where it comes out,
+    /// and of a junction.
+    pub(super) fn screen(&self, extra: &Extra, length_m: f64) -> Option<ActorPlan> {
+        let side = self.told.comes_from_side()?;
+        let [left_m, right_m] = [self.ground.opposing_m - 0.5 * LANE_M, self.ground.lane_edges_m[1]];
+        let against = side == LeftRight::Left && (extra.opposite || left_m < LANE_M);
+        let t_m = match side {
+            LeftRight::Left if against => -self.ground.opposing_m,
+            LeftRight::Left => -LANE_M,
+            LeftRight::Right if right_m < LANE_M => self.ground.kerbs_m[1],
+            LeftRight::Right => LANE_M,
+        };
+        let before_m = self.ground.junction.then(|| self.ground.first_m() - 0.5 * length_m - ROOM_M);
+        let hides_m = self.hides_m(t_m, length_m);
+        let s_m = hides_m.into_iter().chain(before_m).reduce(f64::min)?;
+        let pose = self.ground.pose(s_m, t_m);
+        let turned_deg = if against { 180.0 } else { 0.0 };
+        Some(ActorPlan::standing(Place::at(pose.position.x, pose.position.y, pose.heading.to_degrees() + turned_deg)))
     }
 
     /// Who stands in the next lane where the ego is at the contact; ahead of a partner that is there too, and short of where one

@@ -236,6 +236,9 @@ impl Scene<'_> {
                 self.ground.pose(self.at(from).0 - self.front_m() - 0.5 * length_m, aside.to_t_m.signum() * LANE_M);
             return ActorPlan::standing(Place::at(pose.position.x, pose.position.y, pose.heading.to_degrees()));
         }
+        // An ego that is on its way past it within its lane has it abreast.
+        let came_m = line_m.unwrap_or_else(|| self.at(self.until).1);
+        let line_m = line_m.filter(|line_m| !extra.passed || (self.at(self.until).1 - line_m).abs() > BESIDE_M);
         let (s_m, t_m) = match line_m {
             Some(line_m) => {
                 let left = (0..self.until).find(|step| (self.at(*step).1 - line_m).abs() > BESIDE_M);
@@ -246,8 +249,8 @@ impl Scene<'_> {
             None => {
                 let sign = if extra.side == Some(LeftRight::Left) { -1.0 } else { 1.0 };
                 let beside_m = 0.5 * (size_of(&self.told.sv).1 + width_m) + ROOM_BESIDE_M;
-                let (s_m, t_m) = self.at(self.until);
-                (s_m, t_m + sign * beside_m)
+                let t_m = came_m + sign * beside_m;
+                (self.hides_m(t_m, length_m).unwrap_or_else(|| self.at(self.until).0), t_m)
             }
         };
         let pose = self.ground.pose(s_m, t_m);

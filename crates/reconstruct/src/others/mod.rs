@@ -1,7 +1,7 @@
 //! Where others than the two stand and drive who have a part in what the ego does, seen from how the two come to the contact.
 
 pub(crate) mod actors;
-mod beside;
+pub(crate) mod beside;
 mod crossing;
 mod lane;
 mod scene;

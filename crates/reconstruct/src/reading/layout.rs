@@ -36,7 +36,8 @@ impl Layout {
             crosswalk: is_told_on(account, partner, &["crosswalk", "sidewalk"])
                 && !is_told_on(account, partner, &BESIDE_WALK),
             beside_crosswalk: is_told_on(account, partner, &BESIDE_WALK),
-            along_kerb: is_told_on(account, partner, &["between"]) && is_told_on(account, partner, &BESIDE_KERB),
+            along_kerb: passes_by_kerb(account, partner)
+                || is_told_on(account, partner, &["between"]) && is_told_on(account, partner, &BESIDE_KERB),
             abreast: drives_abreast(account, partner),
             centre_line: has(RoadFeature::DoubleYellowLine),
             right_lane: goes_out_right(account, partner),
@@ -56,6 +57,24 @@ impl Layout {
 fn splits_lanes(party: &Party) -> bool {
     let between = |text: String| text.contains("splitting") || text.ends_with("between");
     party.acts.iter().any(|fact| fact.act == Act::Pass && !fact.after_contact && between(text(&fact.source)))
+}
+
+/// So many bytes behind the words that somebody passed, at most, begin those for who is parked on its other side.
+const BEHIND_PASS: usize = 60;
+
+/// "squeezed between the AV and the curb", "passed on the right, between the AV and a row of parked cars": no lane is there.
+fn passes_by_kerb(account: &Account, partner: &Party) -> bool {
+    let parking = account.place.features.iter().filter(|fact| fact.value == RoadFeature::ParkingLane);
+    let parking: Vec<usize> = parking.filter_map(|fact| Some(span(&fact.source)?.0)).collect();
+    let by = |fact: &ActFact| {
+        let words = text(&fact.source);
+        let between = words.contains("between") && !words.contains("lane") && !words.ends_with("between");
+        let end = span(&fact.source).map_or(0, |(_, end)| end);
+        let parked =
+            fact.side == Some(LeftRight::Right) && parking.iter().any(|at| (end..end + BEHIND_PASS).contains(at));
+        fact.act == Act::Pass && !fact.after_contact && (between || parked)
+    };
+    partner.acts.iter().any(by)
 }
 
 /// Words for somebody that crosses where no crosswalk is.
@@ -165,12 +184,17 @@ fn stands_at_kerb(account: &Account, party: &Party) -> bool {
         party.acts.iter().filter(stands).filter_map(|fact| span(&fact.source)).map(|at| at.1).collect();
     let kerb = |fact: &&Fact<RoadFeature>| {
         let words = text(&fact.source);
-        fact.value == RoadFeature::ParkingLane && words.contains("curb")
+        fact.value == RoadFeature::ParkingLane && (words.contains("curb") || words.contains("edge of"))
     };
     let kerbs = account.place.features.iter().filter(kerb).filter_map(|fact| span(&fact.source));
     let mut kerbs = kerbs.map(|at| at.0);
+    // "It was held by a light, with a van parked at the curb": that kerb is the van's.
+    let others = account.others.iter().flat_map(|other| &other.acts).filter(stands);
+    let others: Vec<usize> = others.filter_map(|fact| Some(span(&fact.source)?.0)).collect();
+    let of_other = |from: usize, kerb: usize| others.iter().any(|start| (from..=kerb).contains(start));
     kerbs.any(|kerb| {
-        ends.iter().any(|end| (*end..*end + BEHIND_STAND).contains(&kerb) || kerb + BEHIND_STAND > *end && kerb < *end)
+        let behind = |end: usize| (end..end + BEHIND_STAND).contains(&kerb) && !of_other(end, kerb);
+        ends.iter().any(|end| behind(*end) || kerb + BEHIND_STAND > *end && kerb < *end)
     })
 }
 

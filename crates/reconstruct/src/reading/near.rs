@@ -149,6 +149,8 @@ impl Near {
         let queue = other.place.as_ref().is_some_and(|fact| text(&fact.source).contains("queue"));
         let does = match does {
             Does::Untold if queue || is_in_turn_lane(other) => Does::Stands,
+            // "A truck in the opposing lane blocked its view of who came from behind that."
+            Does::Untold if other.hides && place == Some(Origin::Opposite) => Does::Stands,
             // "A gap in passing traffic".
             Does::Untold if said(&["passing"]) && Does::Passes.fits(place) => Does::Passes,
             does => does,

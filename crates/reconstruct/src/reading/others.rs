@@ -104,7 +104,8 @@ pub(super) fn wanted(told: &Told, account: &Account) -> Vec<Extra> {
                     near
                 }
             });
-            near.map(|near| Extra { awaited, several, ..Extra::near(near, number, kind) })
+            let hides = other.hides;
+            near.map(|near| Extra { awaited, several, hides, ..Extra::near(near, number, kind) })
         };
         // Traffic that an ego passes which is not told to have slowed or stood is there.
         let passes =
@@ -126,7 +127,12 @@ pub(super) fn wanted(told: &Told, account: &Account) -> Vec<Extra> {
         let moves_up = (late || story.is_placed_as_it_slows(told, other)) && before_contact(other).next().is_none();
         let again = role == Role::Lead && (story.stands_again(other) || moves_up);
         let stays = role == Role::Walker && stays_close(other);
-        match list.iter_mut().find(|extra| extra.role == role && extra.stays == stays) {
+        // "With a van parked at each side of the drive, a boy ran out from between the vans": those are parked.
+        let parks = |extra: &Extra| {
+            let same = extra.kind.partner_kind() == kind.partner_kind();
+            role == Role::Screen && extra.role == Role::Kerb && same && other.acts.is_empty()
+        };
+        match list.iter_mut().find(|extra| extra.role == role && extra.stays == stays || parks(extra)) {
             Some(known)
                 if kind.partner_kind().is_none_or(|kind| known.kind.partner_kind() == Some(kind))
                     || is_of_queue(known, other) =>
@@ -138,6 +144,10 @@ pub(super) fn wanted(told: &Told, account: &Account) -> Vec<Extra> {
                 known.goes |= goes;
                 known.parked |= parked;
                 known.several = true;
+                known.hides |= other.hides;
+                if role == Role::Screen && known.role == Role::Kerb {
+                    known.side = told.comes_from_side();
+                }
                 known.first |= first;
                 known.again |= again;
             }
@@ -148,7 +158,7 @@ pub(super) fn wanted(told: &Told, account: &Account) -> Vec<Extra> {
                 let behind = role == Role::Obstacle && story.is_back(other);
                 let between = role == Role::Beside && story.is_between(told, other);
                 let parks = role == Role::Lead && is_parking(other);
-                let passed = role == Role::Kerb && story.goes_by(told, other);
+                let passed = matches!(role, Role::Kerb | Role::Obstacle) && story.goes_by(told, other);
                 let goes_out = role == Role::Passed && story.is_reason_to_go_out(told, other);
                 list.push(Extra {
                     of: vec![number],
@@ -165,6 +175,8 @@ pub(super) fn wanted(told: &Told, account: &Account) -> Vec<Extra> {
                     awaited,
                     behind,
                     between,
+                    led: role == Role::Animal && story.led_by(other).is_some(),
+                    hides: other.hides,
                     passed,
                     stays,
                     opposite: other.place.as_ref().is_some_and(|fact| fact.value == Origin::Opposite),
@@ -237,7 +249,7 @@ fn is_drawn(told: &Told, role: Role) -> bool {
     match role {
         Role::Kerb | Role::Beside | Role::Near => true,
         Role::Obstacle | Role::Oncoming | Role::Merger | Role::Backer | Role::Abreast => drives,
-        Role::Passed => told.thing.is_none(),
+        Role::Passed | Role::Screen => told.thing.is_none(),
         // Who was in the way of an ego that stood, and has left, may have left something there.
         Role::Walker if told.thing.is_some() => drives && sets_off(told),
         // Ahead of a partner that is ahead itself, and stands or backs there.

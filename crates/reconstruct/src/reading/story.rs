@@ -5,7 +5,7 @@ use crate::reading::words::{before_contact, span, text};
 use crate::told::crash::Told;
 use crate::told::others::Role;
 use crate::told::queue::sets_off;
-use crate::told::side::Turning;
+use crate::told::side::{Turning, is_on_foot};
 use crate::told::zones::side_of;
 use recrash_model::account::{
     Account, Act, ActFact, ContactState, ControlDevice, Kind, KindGroup, LeftRight, Origin, Other, PlaceKind,
@@ -20,6 +20,9 @@ const NAMED_BEFORE: usize = 160;
 
 /// Who is named no farther behind the words that the ego passed is whom it passed. [byte]
 const PASSES_WITHIN: usize = 12;
+
+/// Who is named no farther behind another is with that: " with ". [byte]
+const WITH_WITHIN: usize = 8;
 
 /// For whom the partner leaves its lane is named no farther behind the words for that: " to the left to go around ".
 const GOES_OUT_WITHIN: usize = 30;
@@ -318,6 +321,30 @@ impl Story<'_> {
         told.comes_over || at_kerb && self.account.partner.as_ref().is_some_and(|party| party.acts.iter().any(passes))
     }
 
+    /// Whether a partner that comes across came out from behind somebody, or from between several, who are not told to drive or to be at a kerb.
+    fn is_screen(&self, told: &Told, other: &Other) -> bool {
+        let stays = before_contact(other).all(|fact| matches!(fact.act, Act::Hold | Act::Stop | Act::Park | Act::Slow));
+        let at_kerb = is_parked(other) && !stands_in_lane(other);
+        let beside = matches!(
+            other.place.as_ref().map(|fact| fact.value),
+            None | Some(Origin::Beside { .. } | Origin::Opposite)
+        );
+        // Who pulls out on wheels comes along beside the lanes.
+        let across = is_on_foot(told.cp.kind) || !matches!(told.origin, Origin::Parked { .. });
+        other.hides && stays && beside && !at_kerb && across && told.comes_from_side().is_some()
+    }
+
+    /// With whom an animal goes of which no more is told: "a man with a dog".
+    pub(super) fn led_by(&self, other: &Other) -> Option<&Other> {
+        let (first, _) = span(&other.kind.source)?;
+        let with = |who: &&Other| {
+            let near = span(&who.kind.source).is_some_and(|(_, end)| (end..end + WITH_WITHIN).contains(&first));
+            near && who.kind.value.group() == KindGroup::OnFoot && before_contact(who).next().is_some()
+        };
+        let alone = other.place.is_none() && before_contact(other).next().is_none();
+        self.account.others.iter().find(with).filter(|_| alone)
+    }
+
     /// Whether somebody who stands, or is slow, is told right behind the words that the partner came up or left its lane beside the ego: "came up
     /// behind a slow truck and changed lanes", "changed lanes to go around a stopped bus".
     pub(super) fn is_reason_to_go_out(&self, told: &Told, other: &Other) -> bool {
@@ -487,12 +514,16 @@ impl Story<'_> {
         if stands && !other.several && self.is_between(told, other) {
             return Some(Role::Beside);
         }
+        if self.is_screen(told, other) {
+            return Some(Role::Screen);
+        }
         if is_parked(other) && !did(&[Act::PullOut, Act::SetOff, Act::Follow, Act::Reverse]) {
             let double = said(&["double"]) || stands_in_lane(other);
             let waits =
                 because(StandReason::BlockedPath) || because(StandReason::LeadVehicle) || place == Some(Origin::Ahead);
             let named_before = double && place.is_none() && self.is_named_before(other);
-            let blocks = near && (waits || double) || named_before;
+            // Who stands in the lane of those who come towards the ego is not in its way.
+            let blocks = (near && (waits || double) || named_before) && place != Some(Origin::Opposite);
             let round = goes_round(told) && told.thing.is_none_or(|thing| thing != other.kind.value);
             return match (other.several, round && !self.keeps_to_kerb(told, other, place)) {
                 // A row of them that is double-parked in the lane towards the ego is at no kerb.
@@ -506,7 +537,9 @@ impl Story<'_> {
             };
         }
         // Whom it passes on its way out of its line, and whom it has passed and come back behind.
-        let passed = told.sv.state.stands() && self.passes_at(other).is_some() || self.is_back(other);
+        let passed = told.sv.state.stands() && self.passes_at(other).is_some()
+            || self.is_back(other)
+            || self.goes_by(told, other) && matches!(place, None | Some(Origin::Ahead));
         if stands && !other.several && passed && told.sv_aside().is_some() {
             return Some(Role::Obstacle);
         }
@@ -535,7 +568,9 @@ impl Story<'_> {
             let only_passes = !did(&[Act::Hold, Act::Stop, Act::Turn, Act::LaneChange, Act::Park, Act::Reverse]);
             // Of who turns across it, it is told only because that waits for it.
             let waits = near || other.several && (told.sv.turning == Turning::Left || acts_not);
-            return (only_passes && (waits || did(&[Act::Follow]))).then_some(Role::Oncoming);
+            // Who hides somebody stands there.
+            let stays = other.hides && acts_not;
+            return (only_passes && !stays && (waits || did(&[Act::Follow]))).then_some(Role::Oncoming);
         }
         let queue = because(StandReason::Queue) || because(StandReason::LeadVehicle);
         let ahead = place == Some(Origin::Ahead) || said(&["lead", "preceding"]);
@@ -635,6 +670,11 @@ impl Story<'_> {
         let passed = passes.and_then(|fact| fact.side).or(told.sv.aside).map(LeftRight::other);
         match other.place.as_ref().map(|fact| fact.value) {
             Some(Origin::Beside { side } | Origin::Cross { side }) => Some(side),
+            _ if role == Role::Animal && self.led_by(other).is_some() => {
+                self.led_by(other).and_then(|who| self.side(Role::Walker, told, who))
+            }
+            // From between them somebody came out.
+            _ if role == Role::Kerb && other.hides && told.comes_from_side().is_some() => told.comes_from_side(),
             // One that is parked is where the partner comes from, or on the right.
             _ if role == Role::Kerb && !other.several => match told.origin {
                 Origin::Parked { side } | Origin::Driveway { side } | Origin::Sidewalk { side } => side,

@@ -22,8 +22,10 @@ pub(crate) enum Role {
     Kerb,
     /// Stands in the lane that the ego leaves, or beside its way: it goes round it.
     Obstacle,
-    /// Stands in the lane that the partner leaves: it goes round it.
+    /// Stands in the lane that the partner leaves, or is slow there: it goes round it.
     Passed,
+    /// Stands beside the ego's way, short of where the partner comes out from behind it.
+    Screen,
     /// Changes from beside the ego into its lane, ahead of it.
     Merger,
     /// Stands across the junction, in the ego's way.
@@ -55,6 +57,7 @@ impl Role {
             Self::Kerb => "kerb",
             Self::Obstacle => "obstacle",
             Self::Passed => "passed",
+            Self::Screen => "screen",
             Self::Merger => "merger",
             Self::Blocker => "blocker",
             Self::Beyond => "beyond",
@@ -89,6 +92,7 @@ impl Extra {
             Role::Obstacle => "one stands that it goes round",
             Role::Passed if self.slow => "one is slow that the partner goes round",
             Role::Passed => "one stands that the partner goes round",
+            Role::Screen => "one stands that hides the partner",
             Role::Merger => "one changes into its lane ahead",
             Role::Blocker => "one stands across the junction",
             Role::Beyond => "one stands behind the junction",
@@ -124,10 +128,14 @@ pub(crate) struct Extra {
     pub(crate) awaited: bool,
     /// The ego has gone round it, and is back in its lane.
     pub(crate) behind: bool,
-    /// The ego is told to pass who is parked: they are abreast.
+    /// The ego is told to pass who is parked, or stands: they are abreast.
     pub(crate) passed: bool,
     /// The partner is told to pass between the ego and it.
     pub(crate) between: bool,
+    /// An animal that is named with somebody on foot who crosses: they go together.
+    pub(crate) led: bool,
+    /// Who comes across came out from behind it, or from between several.
+    pub(crate) hides: bool,
     /// Who is on foot is told to stay where it is, and not to cross.
     pub(crate) stays: bool,
     /// It is told on the opposite side, and faces as those do who come from there.
@@ -162,6 +170,8 @@ impl Extra {
             behind: false,
             passed: false,
             between: false,
+            led: false,
+            hides: false,
             stays: false,
             opposite: false,
             several: false,

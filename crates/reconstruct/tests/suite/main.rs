@@ -17,6 +17,7 @@ mod going_first;
 mod in_step;
 mod kerb;
 mod lanes;
+mod left_behind;
 mod moves;
 mod near;
 mod near_deeds;

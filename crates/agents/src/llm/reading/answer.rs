@@ -140,6 +140,9 @@ pub(in crate::llm) struct OtherAnswer {
     /// Over which line its body reaches.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub astride: Option<Quoted<Astride>>,
+    /// Somebody came out from behind it, or from between several of it, or could not be seen for it.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub hides: bool,
     /// It and the partner touched before the contact with SV.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub touched_partner: bool,
@@ -289,6 +292,7 @@ impl OtherAnswer {
             several: other.several,
             acts: other.acts.iter().map(ActAnswer::of).collect(),
             astride: Quoted::of_known(&other.astride),
+            hides: other.hides,
             touched_partner: other.touched_partner,
             touch: Quoted::of_known(&other.touch),
         }

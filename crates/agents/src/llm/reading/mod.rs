@@ -214,8 +214,8 @@ fn lay_other(held: &mut Held, number: usize, answer: &OtherAnswer, base: &Accoun
     held.lay(&format!("{path}.astride"), &mut astride, &answer.astride, |_, words| cues::astride(words), no_column);
     let mut touch = known.and_then(|other| other.touch.clone()).filter(|_| answer.touch.is_some());
     held.lay(&format!("{path}.touch"), &mut touch, &answer.touch, |_, words| cues::meets(words), no_column);
-    let OtherAnswer { several, touched_partner, .. } = *answer;
-    Some(Other { kind, place, several, acts, astride, touched_partner, touch })
+    let OtherAnswer { several, hides, touched_partner, .. } = *answer;
+    Some(Other { kind, place, several, acts, astride, hides, touched_partner, touch })
 }
 
 /// How many facts about the two have words or a column.
