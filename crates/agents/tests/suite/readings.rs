@@ -262,6 +262,7 @@ fn of_another_partner_nothing_of_the_draft_stays() {
     let account = mended(other).unwrap();
     let partner = account.partner.unwrap();
     assert!(partner.zones.is_empty() && partner.movement.is_none() && partner.kind.is_some());
+    assert_eq!((&account.striker, &account.crash_type, &account.first_contact), (&None, &None, &None));
 }
 
 #[test]

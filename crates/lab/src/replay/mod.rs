@@ -52,14 +52,17 @@ pub fn in_words(draft: &ScenarioDraft, rollout: &Rollout) -> String {
     lines.join("\n") + "\n"
 }
 
-/// The step at or before the first contact of anybody; the last one where nobody touches.
+/// The step at or before the ego's first contact; of a run without one the first of anybody, else the last step.
 fn first_contact_step(rollout: &Rollout) -> usize {
     let last = rollout.steps() - 1;
-    rollout
-        .events
-        .iter()
-        .find(|event| is_touch(event))
-        .map_or(last, |event| ((event.time_s / STEP_S + 1e-9) as usize).min(last))
+    let of_ego = |actor: usize| actor == 0 || rollout.actors[actor].part_of == Some(0);
+    let meets = |event: &&Event| match &event.kind {
+        EventKind::Contact { a, b, .. } => of_ego(*a) || of_ego(*b),
+        EventKind::ObstacleContact { actor, .. } => of_ego(*actor),
+        EventKind::Gone { .. } => false,
+    };
+    let touch = rollout.events.iter().find(meets).or_else(|| rollout.events.iter().find(|event| is_touch(event)));
+    touch.map_or(last, |event| ((event.time_s / STEP_S + 1e-9) as usize).min(last))
 }
 
 fn is_touch(event: &Event) -> bool {

@@ -217,27 +217,28 @@ fn model_accounts(
         .iter()
         .flat_map(|incident| incident.reports.iter().map(move |report| (report.record.id.report_id.as_str(), incident)))
         .collect();
-    let read = |label: &Label| -> Result<LabelledAccount, PipelineError> {
+    // Why there is none, where the model gives no usable one; what stops the run is an error.
+    let read = |label: &Label| -> Result<Result<LabelledAccount, String>, PipelineError> {
         let incident = of_report.get(label.record.report_id.as_str()).copied();
         let Some((incident, base)) = incident.and_then(|it| Some((it, recrash_reader::account(it)?))) else {
-            return Err(PipelineError::bad_input("it has no narrative that can be read"));
+            return Ok(Err("it has no narrative that can be read".to_owned()));
         };
         let reports: Vec<&CrashRecord> = incident.reports.iter().map(|report| &report.record).collect();
         let scenario_id = format!("eval-{}", base.incident);
         let brief = reading_brief(&scenario_id, &reports, profile, &base);
         let repairs = Repairs::default();
-        let account = models.model(&request.agent, &cast, &repairs).read(&brief, &base);
-        account
-            .map(|account| told::in_labels(&account))
-            .or_else(|error| Err(PipelineError::bad_input(unusable(error)?)))
+        match models.model(&request.agent, &cast, &repairs).read(&brief, &base) {
+            Ok(account) => Ok(Ok(told::in_labels(&account))),
+            Err(error) => unusable(error).map(Err),
+        }
     };
     let mut accounts = Vec::with_capacity(found.len());
     let mut waiting = false;
     for (label, _) in found {
         accounts.push(match read(label) {
-            Ok(account) => account,
-            Err(PipelineError::BadInput { what, .. }) => {
-                unread.push((label.record.clone(), what));
+            Ok(Ok(account)) => account,
+            Ok(Err(why)) => {
+                unread.push((label.record.clone(), why));
                 LabelledAccount::default()
             }
             Err(PipelineError::AnswerPending) => {

@@ -470,7 +470,8 @@ pub(super) fn turns_on_red(reading: &Reading<'_>) -> bool {
         let turn = words.iter().take(ON_RED_WITHIN).position(|token| token.text == "on");
         turn.is_some_and(|on| words.get(on + 1).is_some_and(|token| token.text == "red"))
     };
-    reading.before(SUBJECT).any(|(_, frame)| matches!(frame.act(), Some(Act::Turn | Act::SetOff)) && red(frame))
+    let turns = |frame: &Frame| matches!(frame.act(), Some(Act::Turn | Act::SetOff)) && frame.happened();
+    reading.before(SUBJECT).any(|(_, frame)| turns(frame) && red(frame))
 }
 
 /// So many words after the verb of a turn, at most, stand those that it was made at red: "went to turn right on red". [tokens]

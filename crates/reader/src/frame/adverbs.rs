@@ -232,7 +232,10 @@ fn pulls_out_to_a_lane(frames: &[Frame], number: usize, tokens: &[Token], senten
     if frame.act() != Some(Act::PullOut) || frame.out_of.is_some() {
         return false;
     }
-    let text = |from: usize, to: usize| tokens[from.min(to)..to].iter().map(|token| token.text.as_str());
+    let text = |from: usize, to: usize| {
+        let to = to.min(tokens.len());
+        tokens[from.min(to)..to].iter().map(|token| token.text.as_str())
+    };
     let behind: Vec<&str> = text(frame.first, behind(frames, number, sentences)).collect();
     let into = behind.iter().position(|word| matches!(*word, "into" | "toward" | "towards" | "to" | "onto"));
     let lane = into.is_some_and(|into| behind[into..].iter().take(6).any(|word| *word == "lane"));

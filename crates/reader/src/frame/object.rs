@@ -6,6 +6,7 @@ use super::row::transitive;
 use super::zone_of;
 use crate::chunk::{Chunk, Piece, Placed};
 use crate::lexicon::{Form, Meaning, Progress, Relation, Sense};
+use crate::token::Token;
 use crate::token::TokenKind;
 use crate::world::{Actor, SUBJECT};
 use recrash_model::account::{Act, Kind, KindGroup, LeftRight};
@@ -45,7 +46,7 @@ impl Parser<'_> {
             }
             "for" if self.waits_for(self.standing_before(frame), mention.actor) => {
                 let frame = self.standing_before(frame);
-                if !self.comes_across(mention.actor, placed.end) && !self.at_yield_line(frame, placed.first) {
+                if !self.comes_across(mention.actor, placed.end) && !self.at_yield_line(frame, placed) {
                     self.note(mention.actor, Relation::Ahead);
                 }
                 self.frames[frame].object.get_or_insert(mention.actor);
@@ -285,10 +286,13 @@ impl Parser<'_> {
         opposite || other_way || behind
     }
 
-    /// "had waited at the yield line for a van": that comes across its way.
-    fn at_yield_line(&self, frame: usize, end: usize) -> bool {
-        let words = &self.tokens[self.frames[frame].first.min(end)..end];
-        words.windows(2).any(|pair| pair[0].text == "yield" && matches!(pair[1].text.as_str(), "line" | "sign"))
+    /// "had waited at the yield line for a van": that comes across its way. Who is waited for "to go" stands ahead.
+    fn at_yield_line(&self, frame: usize, placed: &Placed) -> bool {
+        let words = &self.tokens[self.frames[frame].first.min(placed.first)..placed.first];
+        let next = |at: usize| self.tokens.get(placed.end + at).map_or("", |token| token.text.as_str());
+        let goes = next(0) == "to" && matches!(next(1), "go" | "move" | "proceed" | "advance");
+        let line = |pair: &[Token]| pair[0].text == "yield" && matches!(pair[1].text.as_str(), "line" | "sign");
+        !goes && words.windows(2).any(line)
     }
 
     /// "a motorcycle came at it".

@@ -123,7 +123,7 @@ fn names_system(tokens: &[Token], at: usize) -> Option<usize> {
         "assistance",
         "ads",
     ];
-    if !matches!(tokens[at].text.as_str(), "system" | "ads" | "software" | "autonomy" | "autopilot") {
+    if !matches!(tokens[at].text.as_str(), "system" | "ads" | "software" | "autonomy") {
         return None;
     }
     let article = (at.saturating_sub(4)..at).rev().find(|before| !OF.contains(&tokens[*before].text.as_str()))?;

@@ -259,7 +259,11 @@ impl Way<'_> {
                 (stood..self.last()).find(|at| self.is_still(*at) && !self.is_still(at + 1))
             }
             Least::Back => backs(),
-            Least::Aside(_) if doing.within_lane && aside(from, self.last()) > self.room_m => None,
+            Least::Aside(_)
+                if doing.within_lane && (from..=self.last()).any(|then| aside(from, then) > self.room_m) =>
+            {
+                None
+            }
             Least::Aside(by) => self.comes_to(from, share * by, aside),
             Least::Turn(by) => self.comes_to(from, share * by, turned),
             Least::By if doing.begun => self.comes_to(from, BEGUN_PASS_M, aside),

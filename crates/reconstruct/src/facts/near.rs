@@ -82,7 +82,12 @@ impl Near {
             First::Came => state(0).position().distance(state(until).position()) > DROVE_M,
             First::Gone => {
                 let sets_off = |step: &usize| ego.states[*step].velocity().length() > STANDS_MPS;
-                seen((0..until).find(sets_off).unwrap_or(until)).0 < 0.0
+                let stood = (0..until).find(|step| !sets_off(step));
+                let off = stood.and_then(|stood| (stood..until).find(sets_off));
+                off.is_some_and(|off| match self.place {
+                    Some(Origin::Cross { .. }) => seen(0).1 * seen(off).1 < 0.0,
+                    _ => seen(0).0 > 0.0 && seen(off).0 < 0.0,
+                })
             }
             First::Left => seen(until).1.abs() > 0.5 * LANE_M || seen(until).0 < -half_m,
         };

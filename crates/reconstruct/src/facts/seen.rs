@@ -194,7 +194,9 @@ impl<'a> Seen<'a> {
                 Role::Beside => self.stands_beside(extra, track),
                 Role::Backer => self.backs_out(extra, track),
                 Role::Abreast => self.drives_beside(extra, track),
-                Role::Kerb => self.is_parked(track) && self.is_on_side(extra, track),
+                Role::Kerb => {
+                    self.is_parked(track) && self.is_on_side(extra, track) && (!extra.hides || self.hides(track))
+                }
                 Role::Obstacle => self.is_passed(extra, track),
                 Role::Passed => self.partner_passes(extra, track),
                 Role::Screen => self.hides(track),

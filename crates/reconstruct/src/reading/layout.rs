@@ -78,7 +78,8 @@ fn passes_by_kerb(account: &Account, partner: &Party) -> bool {
 }
 
 /// Words for somebody that crosses where no crosswalk is.
-const BESIDE_WALK: [&str; 4] = ["outside of", "ahead of the crosswalk", "mid-block", "midblock"];
+const BESIDE_WALK: [&str; 6] =
+    ["outside", "not in the crosswalk", "away from the crosswalk", "ahead of the crosswalk", "mid-block", "midblock"];
 
 /// Words for what is at the edge of the road.
 const BESIDE_KERB: [&str; 4] = ["curb", "kerb", "gutter", "parked"];
@@ -101,7 +102,9 @@ const COMES_UP: [&str; 6] = ["came up", "coming up", "approach", "overt", "pass"
 fn drives_abreast(account: &Account, partner: &Party) -> bool {
     let beside = account.came_from.as_ref().filter(|fact| matches!(fact.value, Origin::Beside { .. }));
     let passes = matches!(told(&partner.movement), Some(Movement::Passing)) || partner.did(Act::Pass);
-    beside.map(|fact| text(&fact.source)).is_some_and(|text| {
+    // A lane next to the ego's is no vehicle next to it.
+    let of_lane = |text: String| text.replace("lane next to", "lane").replace("lane beside", "lane");
+    beside.map(|fact| of_lane(text(&fact.source))).is_some_and(|text| {
         let has = |words: &[&str]| words.iter().any(|word| text.contains(word));
         !passes && has(&ABREAST) && !has(&COMES_UP)
     })
@@ -234,10 +237,14 @@ fn light_changes(party: &Party) -> bool {
     turned || texts.any(|text| text.contains("green") || light(&text) && text.contains("chang"))
 }
 
-/// Whether words tell that somebody turned at red: "a right turn on red".
+/// Whether words tell that somebody turned at red: "a right turn on red". Not "stopped on red".
 fn turns_on_red(party: &Party) -> bool {
     let acts = party.acts.iter().filter(|fact| !fact.after_contact).map(|fact| &fact.source);
-    acts.chain(party.controls.iter().map(|fact| &fact.source)).any(|source| text(source).contains("on red"))
+    let turns = |source: &Source| {
+        let words = text(source).replace('-', " ");
+        words.contains("on red") && ["turn", "right on", "left on"].iter().any(|turn| words.contains(turn))
+    };
+    acts.chain(party.controls.iter().map(|fact| &fact.source)).any(turns)
 }
 
 /// So many words before "door" tell which one it is.

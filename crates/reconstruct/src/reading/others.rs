@@ -171,7 +171,8 @@ pub(super) fn wanted(told: &Told, account: &Account) -> Vec<Extra> {
                     slow: goes_out && before_contact(other).next().is_none(),
                     again,
                     late,
-                    early: role == Role::Crosser && (story.is_gone_before(other) || story.goes_first(told, other)),
+                    early: role == Role::Crosser && story.is_gone_before(other)
+                        || matches!(role, Role::Crosser | Role::Oncoming) && story.goes_first(told, other),
                     awaited,
                     behind,
                     between,

@@ -64,7 +64,7 @@ pub(crate) enum First {
     Came,
     /// Who was in the ego's way has left it.
     Left,
-    /// Who comes towards the ego has gone by when that, which stood, sets off.
+    /// It has gone by when the ego, which stood, sets off: past it, or from one side of its way to the other.
     Gone,
 }
 
@@ -76,11 +76,8 @@ impl Near {
 
     /// The same of one that goes by before an ego that stood sets off, as others with that part do: towards it, or along the crossing road.
     pub(crate) const fn gone_first(self, oncoming: bool) -> Self {
-        let (from, first) = match oncoming {
-            true => (Origin::Opposite, First::Gone),
-            false => (Origin::Cross { side: LeftRight::Left }, self.first),
-        };
-        Self { place: Some(from), does: Does::Drives, first, ..self }
+        let from = if oncoming { Origin::Opposite } else { Origin::Cross { side: LeftRight::Left } };
+        Self { place: Some(from), does: Does::Drives, first: First::Gone, ..self }
     }
 
     /// The name of its actor.

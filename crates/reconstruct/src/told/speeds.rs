@@ -93,7 +93,7 @@ impl Told {
     pub(crate) fn drives_abreast(&self) -> bool {
         let drives =
             |side: &Side| side.state == ContactState::Moving && side.turning == Turning::No && !side.stood_first;
-        self.layout.abreast && drives(&self.sv) && drives(&self.cp) && self.cp.impact_mps.is_none()
+        self.layout.abreast && drives(&self.sv) && drives(&self.cp)
     }
 
     /// No faster is an ego of which no speed is told, where one that comes from behind is told to run into it at one. [m/s]
@@ -188,7 +188,9 @@ impl Told {
                     self.cp.speed_mps = self.cp.speed_mps.max(least).min(slower.max(0.4));
                 }
                 Origin::Beside { .. } if neared => self.cp.speed_mps = NEARED_MPS,
-                Origin::Beside { .. } if self.drives_abreast() => self.cp.speed_mps = sv + SIDE_BY_SIDE_MPS,
+                Origin::Beside { .. } if self.drives_abreast() && self.cp.impact_mps.is_none() => {
+                    self.cp.speed_mps = sv + SIDE_BY_SIDE_MPS
+                }
                 // Who turns beside an ego that turns is hardly faster.
                 Origin::Beside { .. } if self.sv.turning != Turning::No && self.cp.turning == self.sv.turning => {
                     self.cp.speed_mps = sv + ABREAST_MPS;

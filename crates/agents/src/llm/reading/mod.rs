@@ -47,8 +47,7 @@ pub(super) fn account(
     }
     lay_party(&mut held, "sv", &answer.sv, &mut account.sv);
     if answer.another_partner {
-        account.partner = None;
-        account.came_from = None;
+        without_partner(&mut account);
     }
     if let Some(partner) = &answer.partner {
         lay_party(&mut held, "partner", partner, account.partner.get_or_insert_default());
@@ -80,6 +79,14 @@ pub(super) fn account(
     }
     problems.extend(contradictions(&account));
     if problems.is_empty() { Ok(account) } else { Err(problems) }
+}
+
+/// Takes out the partner, and all that is said of what it did to the subject vehicle.
+fn without_partner(account: &mut Account) {
+    (account.partner, account.came_from, account.ahead) = (None, None, None);
+    (account.striker, account.first_contact, account.door) = (None, None, None);
+    (account.crash_type, account.role, account.order) = (None, None, None);
+    account.sv.acts.iter_mut().for_each(|act| act.after_other = None);
 }
 
 /// Takes out a fact that nobody tells; whether there is one of that name.

@@ -128,7 +128,8 @@ fn comes_from_side(words: &[&str]) -> bool {
     let counts = |word: &str| matches!(word, "second" | "third" | "fourth" | "lane" | "lanes");
     (0..words.len()).any(|at| {
         let side = matches!(words[at..], ["from", "the" | "its", "left" | "right", ..]);
-        let lane = words.get(at + 3).is_some_and(|word| counts(word)) || at > 0 && counts(words[at - 1]);
+        let beside = |word: &&str| counts(word) || matches!(*word, "shoulder" | "side" | "edge" | "rear");
+        let lane = words.iter().skip(at + 3).take(3).any(|word| beside(word)) || at > 0 && counts(words[at - 1]);
         side && !lane
     })
 }
@@ -612,7 +613,7 @@ impl<'a> Case<'a> {
                 words.windows(2).any(|pair| pair == ["right", "angle"] || pair == ["right", "angles"])
                     || words.windows(3).any(|row| matches!(row, ["left", "to", "right"] | ["right", "to", "left"]))
                     || words.contains(&"perpendicular")
-                    || comes_from_side(&words)
+                    || self.partner.lane.is_none() && !words.contains(&"over") && comes_from_side(&words)
             })
     }
 
@@ -675,7 +676,14 @@ impl<'a> Case<'a> {
             words.iter().take(ON_GREEN_WITHIN).any(|token| token.text == "green")
         };
         let comes = self.frames().any(|(_, frame)| frame.act().is_some() && frame.happened() && green(frame));
-        let told = comes && turn_side(self.partner).is_none() && turns_on_red(self.reading);
+        let elsewhere = self.behind
+            || [self.side, self.touched].contains(&Some(LeftRight::Right))
+            || told(&self.partner.lane) == Some(LaneWord::Opposing)
+            || self.clues.any(Relation::Opposite);
+        let own_left =
+            self.account.sv.acts.iter().any(|fact| fact.act == Act::Turn && fact.side == Some(LeftRight::Left));
+        let straight = turn_side(self.partner).is_none() && !self.did(Act::Turn);
+        let told = comes && straight && !elsewhere && !own_left && turns_on_red(self.reading);
         told.then(|| Fact::by_rule(Origin::Cross { side: LeftRight::Left }, "at green, where it turned at red"))
     }
 
