@@ -129,7 +129,7 @@ fn comes_from_side(words: &[&str]) -> bool {
     (0..words.len()).any(|at| {
         let side = matches!(words[at..], ["from", "the" | "its", "left" | "right", ..]);
         let beside = |word: &&str| counts(word) || matches!(*word, "shoulder" | "side" | "edge" | "rear");
-        let lane = words.iter().skip(at + 3).take(3).any(|word| beside(word)) || at > 0 && counts(words[at - 1]);
+        let lane = words.iter().skip(at + 3).take(3).any(beside) || at > 0 && counts(words[at - 1]);
         side && !lane
     })
 }
