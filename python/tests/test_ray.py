@@ -195,7 +195,7 @@ def test_a_corpus_on_metadrive_is_that_of_one_machine(second_node, noted, tmp_pa
 
     program, started = noted
     options = {"ego": "metadrive-idm", "simulator": "metadrive", "python": program, "batch": 2}
-    options["where"] = "road = street and month = 1 and partner = suv or report = 90102-415"
+    options["where"] = "road = street and month = 1 and partner = suv or report = 90101-46"
     table = recrash.ray.corpus(out=tmp_path / "on.parquet", **options)
     workers = started()
     assert len(workers) == 2

@@ -11,8 +11,8 @@ Examples:
   recrash export suite --to openscenario,scenic,metadrive,commonroad,scenarionet    in every format, in suite/exports/
   recrash export suite --to openscenario --as trajectory --to-dir t     partners on the way that was recorded
   recrash export suite --to openscenario --designed --to-dir crashes    the crashes as reconstructed, before tuning
-  recrash export suite/6-tuned/intersection-straight-straight-90101-317.json --to scenic --to-dir t
-  recrash import suite/exports/openscenario/intersection-straight-straight-90101-317.xosc    and back
+  recrash export suite/6-tuned/intersection-straight-straight-90101-80.json --to scenic --to-dir t
+  recrash import suite/exports/openscenario/intersection-straight-straight-90101-80.xosc    and back
 
 What each file holds, and what each tool takes for a position, a heading and a time: docs/formats.";
 

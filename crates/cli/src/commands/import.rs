@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 
 const EXAMPLES: &str = "\
 Examples:
-  recrash import intersection-straight-straight-90101-317.xosc             writes intersection-straight-straight-90101-317.json
+  recrash import intersection-straight-straight-90101-80.xosc             writes intersection-straight-straight-90101-80.json
   recrash import edited.xosc --out edited.json --simulate           and runs it
   recrash import crash.json --out scenario.json                     the paper's JSON dialect
 

@@ -40,7 +40,7 @@ const EXAMPLES: &str = "\
 Examples:
   recrash run                                            the built-in sample, everything else by default, into suite/
   recrash run --records SGO-2021-01_Incident_Reports_ADS.csv --profile paper --out paper-suite
-  recrash simulate suite/6-tuned/intersection-straight-straight-90101-317.json --ego idm
+  recrash simulate suite/6-tuned/intersection-straight-straight-90101-80.json --ego idm
   recrash export suite --to openscenario,scenic          the suite for other tools, in suite/exports/
   recrash run --profile paper --agent gpt-5-mini --max-cost 2    a language model in the roles; recrash prompt shows its questions
   recrash records SGO-2021-01_Incident_Reports_ADS.csv   what is in a crash file, and what of it can be used

@@ -15,7 +15,7 @@ use std::path::PathBuf;
 const EXAMPLES: &str = "\
 Examples:
   recrash simulate                                       the scenarios of suite/, as designed
-  recrash simulate suite/6-tuned/intersection-straight-straight-90101-317.json --ego idm
+  recrash simulate suite/6-tuned/intersection-straight-straight-90101-80.json --ego idm
   recrash simulate paper-suite --ego reference           the scenarios of another suite
   recrash simulate scenario.json --rollout rollout.json --json
   recrash simulate scenario.json --ego recorded --picture scenario.svg
