@@ -1,8 +1,8 @@
 //! Accounts that a language model reads: what is taken, and what goes back to it. Everything here is made up.
 
-use crate::support;
+use crate::support::{self, Script};
 
-use recrash_agents::llm::{Answers, AskError, Exchange, LanguageModel, Question, Repairs};
+use recrash_agents::llm::{LanguageModel, Repairs};
 use recrash_agents::{AgentError, Brief, Paraphrase};
 use recrash_model::account::{ACCOUNT_FORMAT, Account, ContactState, CrashType, Origin, Party, Place, told};
 use recrash_model::narrative::{FactValue, Origin as Whose};
@@ -12,34 +12,6 @@ use recrash_model::template::{Movement, RoadType};
 use recrash_model::zones::ContactZone;
 use serde_json::{Value, json};
 use std::path::Path;
-use std::sync::Mutex;
-
-/// Says one thing after the other, whatever it is asked; keeps what it was told.
-struct Script {
-    lines: Mutex<Vec<String>>,
-    asked: Mutex<Vec<Question>>,
-}
-
-impl Script {
-    fn new<T: ToString>(lines: &[T]) -> Self {
-        let lines = lines.iter().rev().map(T::to_string).collect();
-        Self { lines: Mutex::new(lines), asked: Mutex::default() }
-    }
-
-    /// The last thing it was told.
-    fn last_told(&self) -> String {
-        self.asked.lock().unwrap().last().unwrap().turns.last().unwrap().text.clone()
-    }
-}
-
-impl Answers for Script {
-    fn answer(&self, question: &Question) -> Result<Exchange, AskError> {
-        self.asked.lock().unwrap().push(question.clone());
-        let mut lines = self.lines.lock().unwrap();
-        let answer = if lines.len() > 1 { lines.pop().unwrap() } else { lines[0].clone() };
-        Ok(support::exchange(question, answer))
-    }
-}
 
 const TOLD: &str = "A GM test vehicle was driving straight on Elm Street in autonomous mode when a red sedan came from the left \
                     and failed to stop. The front of the test vehicle struck the right side of the sedan at 12 mph.";

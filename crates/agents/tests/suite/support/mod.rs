@@ -1,6 +1,6 @@
 //! Records for tests.
 
-use recrash_agents::llm::{Asked, Exchange, Question};
+use recrash_agents::llm::{Answers, AskError, Asked, Exchange, Question};
 use recrash_agents::{Brief, Paraphrase, Rules};
 use recrash_model::kinds::PartnerKind;
 use recrash_model::narrative::Narrative;
@@ -10,6 +10,7 @@ use recrash_model::template::{Movement, RoadType, Template};
 use recrash_model::zones::ContactZone;
 use recrash_model::{Outcome, Seed};
 use serde::Deserialize;
+use std::sync::Mutex;
 
 /// A model's answer to a question, without what only a live one has.
 pub fn exchange(question: &Question, answer: String) -> Exchange {
@@ -123,5 +124,35 @@ impl Told {
             sv_speed_mps: self.sv_speed_mps,
             ..record(template, &self.text)
         }
+    }
+}
+
+/// Says one thing after the other, whatever it is asked; keeps what it was told.
+pub struct Script {
+    /// Yet to be said, the last first.
+    lines: Mutex<Vec<String>>,
+    /// What it was asked.
+    asked: Mutex<Vec<Question>>,
+}
+
+impl Script {
+    /// Says these.
+    pub fn new<T: ToString>(lines: &[T]) -> Self {
+        let lines = lines.iter().rev().map(T::to_string).collect();
+        Self { lines: Mutex::new(lines), asked: Mutex::default() }
+    }
+
+    /// The last thing it was told.
+    pub fn last_told(&self) -> String {
+        self.asked.lock().unwrap().last().unwrap().turns.last().unwrap().text.clone()
+    }
+}
+
+impl Answers for Script {
+    fn answer(&self, question: &Question) -> Result<Exchange, AskError> {
+        self.asked.lock().unwrap().push(question.clone());
+        let mut lines = self.lines.lock().unwrap();
+        let answer = if lines.len() > 1 { lines.pop().unwrap() } else { lines[0].clone() };
+        Ok(exchange(question, answer))
     }
 }
