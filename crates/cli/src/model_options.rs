@@ -21,7 +21,8 @@ pub struct ModelArgs {
     /// Who paraphrases: reads the reports. [default: as --agent]
     #[arg(long, value_name = "rules|MODEL")]
     pub paraphrase: Option<String>,
-    /// Who designs. [default: as --agent]
+    /// Who designs; in a suite that goes by accounts, who looks at each replay of what the rules staged, and changes the scenario
+    /// until it shows the crash as told. [default: as --agent]
     #[arg(long, value_name = "rules|MODEL")]
     pub design: Option<String>,
     /// Who tunes; rules is the search, which costs nothing and finds more. [default: rules]

@@ -27,7 +27,7 @@ pub use pairs::{PairView, PairsView, RunTrace, TableView};
 pub use picture::picture;
 pub use recrash_roads::{DrawnArea, GroundShape, LineKind, RoadDrawing, RoadLine};
 pub use thumbnail::Thumbnail;
-pub use view::{AccountRow, CaseContext, CaseRow, CaseView, RunRow, RunView, SuiteView};
+pub use view::{AccountRow, CaseContext, CaseRow, CaseView, Changed, RunRow, RunView, SuiteView};
 
 /// The page. Same view, same bytes; all text of records and models is escaped, and nothing on it can load anything but the
 /// files of its own scenarios, [`case_file_name`], from beside it.

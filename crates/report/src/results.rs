@@ -9,7 +9,7 @@ use recrash_model::severity::Severity;
 use recrash_model::spreadsheet::inert;
 use recrash_model::triage::Triage;
 
-const HEADER: [&str; 58] = [
+const HEADER: [&str; 59] = [
     "scenario",
     "run",
     "road",
@@ -68,6 +68,7 @@ const HEADER: [&str; 58] = [
     "found_by_tuning",
     "reviewed",
     "review_note",
+    "restaged_because",
 ];
 
 /// The table.
@@ -150,6 +151,7 @@ fn row(suite: &SuiteView, case: &CaseRow, name: &str, run: Option<&RunRow>) -> V
     let review = case.review.as_ref().map(|by| &by.review);
     row.push(review.map_or_else(String::new, |review| review.label().to_owned()));
     row.push(review.map_or_else(String::new, |review| review.note.clone()));
+    row.push(case.changed.as_ref().map_or_else(String::new, |changed| changed.what.clone()));
     row
 }
 

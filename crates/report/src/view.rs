@@ -147,6 +147,9 @@ pub struct CaseRow {
     /// What a language model finds that holds the recorded driver's run against the report, where one is cast.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub review: Option<ReviewBy>,
+    /// What a language model changed in what the rules staged, where one was cast and did.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub changed: Option<Changed>,
     /// Whether there is a scenario, and driving it failed.
     pub undriven: bool,
     /// Why the scenario was refused, where it was.
@@ -155,6 +158,15 @@ pub struct CaseRow {
     pub edited: Vec<String>,
     /// A small picture of the last run.
     pub thumbnail: Option<Thumbnail>,
+}
+
+/// What a language model changed in what the rules staged of an account.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Changed {
+    /// The model.
+    pub model: String,
+    /// What was told and shown otherwise before, in its words.
+    pub what: String,
 }
 
 /// What the tables say of one run.

@@ -1,5 +1,5 @@
-//! The roles played by a language model: it reads reports into accounts, designs scenarios, tunes them, and holds replays against
-//! reports. Whatever it says is checked; what cannot be used goes back to it a bounded number of times, and then the caller lets the rules take over.
+//! The roles played by a language model: it reads reports into accounts, designs scenarios, tunes them, stages anew what a
+//! replay does not show as it is told, and holds replays against reports. Whatever it says is checked; what cannot be used goes back to it a bounded number of times, and then the caller lets the rules take over.
 //!
 //! A role makes a [`Question`]; [`Answers`] answers it: live, from a batch, or from the ledger. So prompts, repairs and
 //! fallback are one path for every provider, and a provider is known to
@@ -21,6 +21,7 @@ mod providers;
 mod question;
 mod reading;
 mod repairs;
+mod restaging;
 mod review;
 mod schema;
 mod secrets;
@@ -36,6 +37,7 @@ pub use prices::{ModelPrice, PriceTable, plain_name};
 pub use prompts::{TuneBrief, version as prompts_version};
 pub use question::{Asked, EXCHANGE_FORMAT, Exchange, Purpose, Question, Role, Speaker, Turn};
 pub use repairs::Repairs;
+pub use restaging::Staging;
 pub use secrets::{Scrubber, Secret};
 pub use spending::{Caps, Spending, Spent};
 
@@ -50,6 +52,7 @@ use recrash_model::scenario::{
 };
 use recrash_model::tuning::Parameter;
 use recrash_model::{Diagnostic, Outcome};
+use restaging::RestageAnswer;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use serde_json::{Value, json};
@@ -163,11 +166,20 @@ pub fn review_question(model: &str, brief: &Brief, replay: &str) -> Result<Quest
     question(model, Role::Review, brief, prompts::review(brief, replay)?)
 }
 
+/// The first question of the role that stages anew.
+///
+/// # Errors
+/// [`AgentError::Prompt`].
+pub fn restage_question(model: &str, brief: &Brief, staging: &Staging) -> Result<Question, AgentError> {
+    question(model, Role::Restage, brief, prompts::restage(brief, staging)?)
+}
+
 fn question(model: &str, role: Role, brief: &Brief, text: String) -> Result<Question, AgentError> {
     let (name, schema) = match role {
         Role::Paraphrase => ("account", schemars::schema_for!(AccountAnswer).to_value()),
         Role::Design => ("scenario", schemars::schema_for!(ScenarioAnswer).to_value()),
         Role::Tune => ("values", schemars::schema_for!(ValuesAnswer).to_value()),
+        Role::Restage => ("staging", schemars::schema_for!(RestageAnswer).to_value()),
         Role::Review => ("review", schemars::schema_for!(Review).to_value()),
     };
     let schema = schema::plain(schema);
@@ -315,12 +327,17 @@ impl Design for LanguageModel<'_> {
 }
 
 fn push_repair(question: &mut Question, answer: String, problems: &[String]) -> Result<(), AgentError> {
+    push_turns(question, answer, prompts::repair(problems)?);
+    Ok(())
+}
+
+/// Goes on with the conversation: the model's answer, and what is said to it.
+fn push_turns(question: &mut Question, answer: String, said: String) {
     // Some providers take no empty turn.
     let answer = if answer.trim().is_empty() { "(no answer)".to_owned() } else { question::bounded_turn(&answer) };
     question.turns.push(Turn { speaker: Speaker::Assistant, text: answer });
-    question.turns.push(Turn { speaker: Speaker::User, text: prompts::repair(problems)? });
+    question.turns.push(Turn { speaker: Speaker::User, text: said });
     question.purpose.attempt += 1;
-    Ok(())
 }
 
 /// The answer's object, where it has the form that was asked for; else everything that is wrong with its form.

@@ -3,10 +3,11 @@
 
 use crate::llm::question::{Role, sha256};
 use crate::llm::reading::AccountAnswer;
+use crate::llm::restaging::Staging;
 use crate::{AgentError, Brief};
 use minijinja::value::Serde;
 use minijinja::{Environment, context};
-use recrash_model::metrics::Metrics;
+use recrash_model::metrics::{Check, CheckResult, Metrics};
 use recrash_model::narrative::Narrative;
 use recrash_model::profile::SystemProfile;
 use recrash_model::record::{Coded, CrashRecord};
@@ -32,7 +33,7 @@ macro_rules! files {
 }
 
 /// Every prompt file and worked example: name and content.
-const FILES: [(&str, &str); 17] = files![
+const FILES: [(&str, &str); 21] = files![
     "system.md",
     "paraphrase.md",
     "paraphrase_question.md",
@@ -46,6 +47,10 @@ const FILES: [(&str, &str); 17] = files![
     "tune.md",
     "tune_question.md",
     "tune_crossing.json",
+    "restage.md",
+    "restage_question.md",
+    "restage_oncoming.json",
+    "restaged.md",
     "review.md",
     "review_question.md",
     "review_rear_end.json",
@@ -73,6 +78,7 @@ pub fn system(role: Role, profile: &SystemProfile) -> Result<String, AgentError>
             .into_iter()
             .collect::<Result<_, _>>()?,
         Role::Tune => vec![Example::of("tune_crossing.json", tune_example)?],
+        Role::Restage => vec![Example::of("restage_oncoming.json", restage_example)?],
         Role::Review => vec![Example::of("review_rear_end.json", review_example)?],
     };
     let examples = minijinja::Value::from(Serde(&examples));
@@ -80,6 +86,7 @@ pub fn system(role: Role, profile: &SystemProfile) -> Result<String, AgentError>
         Role::Paraphrase => "paraphrase.md",
         Role::Design => "design.md",
         Role::Tune => "tune.md",
+        Role::Restage => "restage.md",
         Role::Review => "review.md",
     });
     let profile = minijinja::Value::from(Serde(profile));
@@ -112,6 +119,50 @@ fn quoted_records(brief: &Brief) -> Vec<QuotedRecord> {
 /// As [`system`].
 pub fn review(brief: &Brief, replay: &str) -> Result<String, AgentError> {
     review_question(&quoted_records(brief), replay)
+}
+
+/// Asks for what a scenario should show otherwise.
+///
+/// # Errors
+/// As [`system`].
+pub fn restage(brief: &Brief, staging: &Staging) -> Result<String, AgentError> {
+    let facts: Vec<String> = staging.checks.iter().map(fact).collect();
+    restage_question(&quoted_records(brief), &staging_form(&staging.draft), &facts, &staging.replay)
+}
+
+/// Says what a changed scenario shows.
+///
+/// # Errors
+/// As [`system`].
+pub fn restaged(staging: &Staging) -> Result<String, AgentError> {
+    let missed: Vec<String> = staging.missed.iter().map(fact).collect();
+    render("restaged.md", context! { missed, replay => capped(staging.replay.trim_end(), MAX_REPLAY) })
+}
+
+/// Why a model that is content must not be.
+pub fn missed(checks: &[Check]) -> String {
+    let told: Vec<String> = checks.iter().map(fact).collect();
+    format!("as_told is true, and told facts are missed: {}", told.join("; "))
+}
+
+/// A told fact, and what the run shows of it.
+fn fact(check: &Check) -> String {
+    let (kind, told, seen) = (check.kind.label(), &check.expected, &check.observed);
+    match check.result {
+        CheckResult::Shown => format!("{kind}: {told} (shown)"),
+        CheckResult::NotShown => format!("{kind}: {told}; shown is {seen}"),
+        CheckResult::CannotBeShown | CheckResult::NotTold => format!("{kind}: {told} (not checked in this run)"),
+    }
+}
+
+/// What of a reconstruction a model may change, and what it must know beside that.
+fn staging_form(draft: &ScenarioDraft) -> Value {
+    let ego = &draft.ego;
+    json!({
+        "map": draft.map,
+        "ego": {"kind": ego.kind, "size": ego.size, "parts": ego.parts, "lane": ego.lane, "route": ego.route, "recorded": ego.recorded},
+        "actors": draft.actors, "objects": draft.objects, "control": draft.control, "duration_s": draft.duration_s,
+    })
 }
 
 /// Asks for a scenario.
@@ -173,6 +224,17 @@ fn paraphrase_question(id: &str, records: &[QuotedRecord], draft: &Value) -> Res
 fn review_question(records: &[QuotedRecord], replay: &str) -> Result<String, AgentError> {
     let (records, replay) = (minijinja::Value::from(Serde(records)), capped(replay.trim_end(), MAX_REPLAY));
     render("review_question.md", context! { records, replay })
+}
+
+fn restage_question(
+    records: &[QuotedRecord],
+    scenario: &Value,
+    facts: &[String],
+    replay: &str,
+) -> Result<String, AgentError> {
+    let (records, replay) = (minijinja::Value::from(Serde(records)), capped(replay.trim_end(), MAX_REPLAY));
+    let (scenario, facts) = (capped(&scenario.to_string(), MAX_REPLAY), facts.to_vec());
+    render("restage_question.md", context! { records, scenario, facts, replay })
 }
 
 fn design_question(id: &str, template: Template, narrative: &str) -> Result<String, AgentError> {
@@ -244,6 +306,18 @@ struct TuneExample {
 fn tune_example(example: &TuneExample) -> Result<String, AgentError> {
     let TuneExample { narrative, scenario, metrics, parameters, tries } = example;
     tune_question("example", narrative, scenario, metrics, parameters, tries)
+}
+
+#[derive(Deserialize)]
+struct RestageExample {
+    records: Vec<QuotedRecord>,
+    scenario: Value,
+    facts: Vec<String>,
+    replay: Vec<String>,
+}
+
+fn restage_example(example: &RestageExample) -> Result<String, AgentError> {
+    restage_question(&example.records, &example.scenario, &example.facts, &example.replay.join("\n"))
 }
 
 #[derive(Deserialize)]
@@ -395,7 +469,7 @@ mod tests {
     #[test]
     fn every_role_has_its_task_and_examples() {
         let profile: SystemProfile = toml::from_str(include_str!("../../../../profiles/paper.toml")).unwrap();
-        let words = ["Read", "Design", "Propose", "Hold"];
+        let words = ["Read", "Design", "Propose", "Look", "Hold"];
         for (role, word) in Role::ALL.into_iter().zip(words) {
             let text = system(role, &profile).unwrap();
             assert!(text.contains(word) && text.contains("Answer:\n{\""), "{text}");

@@ -51,13 +51,15 @@ pub enum Role {
     Design,
     /// Proposes other numbers.
     Tune,
+    /// Changes what a replay does not show as it is told.
+    Restage,
     /// Holds the replay against the report.
     Review,
 }
 
 impl Role {
     /// All of them, in order.
-    pub const ALL: [Self; 4] = [Self::Paraphrase, Self::Design, Self::Tune, Self::Review];
+    pub const ALL: [Self; 5] = [Self::Paraphrase, Self::Design, Self::Tune, Self::Restage, Self::Review];
 
     /// Name on the command line and in tables.
     pub fn name(self) -> &'static str {
@@ -65,6 +67,7 @@ impl Role {
             Self::Paraphrase => "paraphrase",
             Self::Design => "design",
             Self::Tune => "tune",
+            Self::Restage => "restage",
             Self::Review => "review",
         }
     }

@@ -7,8 +7,7 @@ use recrash_model::review::{LONGEST_NOTE, Review};
 /// # Errors
 /// A field is `no`, and nothing says why.
 pub(super) fn taken(answer: Review) -> Result<Review, Vec<String>> {
-    let words: Vec<&str> = answer.note.split(|c: char| c.is_whitespace() || c.is_control()).collect();
-    let note: String = words.into_iter().filter(|word| !word.is_empty()).collect::<Vec<_>>().join(" ");
+    let note = in_one_line(&answer.note);
     let wrong: Vec<&str> = answer.wrong().collect();
     if wrong.is_empty() {
         return Ok(Review { note: String::new(), ..answer });
@@ -20,5 +19,11 @@ pub(super) fn taken(answer: Review) -> Result<Review, Vec<String>> {
         );
         return Err(vec![what]);
     }
-    Ok(Review { note: note.chars().take(LONGEST_NOTE).collect(), ..answer })
+    Ok(Review { note, ..answer })
+}
+
+/// A note as it is kept.
+pub(super) fn in_one_line(note: &str) -> String {
+    let words = note.split(|c: char| c.is_whitespace() || c.is_control()).filter(|word| !word.is_empty());
+    words.collect::<Vec<_>>().join(" ").chars().take(LONGEST_NOTE).collect()
 }

@@ -5,6 +5,7 @@ mod designs;
 mod narratives;
 mod readings;
 mod real_records;
+mod restagings;
 mod reviews;
 mod support;
 mod worked_examples;

@@ -12,6 +12,7 @@ Examples:
   recrash prompt paraphrase                              for the first scenario of suite/, or of the built-in sample
   recrash prompt design --scenario intersection-straight-left-90100-12 --out mini-suite
   recrash prompt paraphrase --records ads.csv --record 30270-7733/2
+  recrash prompt restage --out suite                     what the rules staged, and its replay, beside its report
   recrash prompt review --out suite                      a replay beside its report, of a suite that goes by accounts
   recrash prompt tune --json | jq .question.schema       the schema that the answer must fit
 
@@ -21,7 +22,7 @@ No network and no key is needed, and nothing is written. Repairs and later round
 #[derive(Debug, Clone, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct PromptArgs {
-    /// Role: paraphrase, design, tune or review.
+    /// Role: paraphrase, design, tune, restage or review.
     #[arg(value_name = "ROLE", value_parser = role)]
     pub role: Role,
     /// Scenario of the suite. [default: the first]
@@ -48,7 +49,7 @@ fn role(name: &str) -> Result<Role, String> {
     Role::ALL
         .into_iter()
         .find(|role| role.name() == name)
-        .ok_or_else(|| "it is paraphrase, design, tune or review".to_owned())
+        .ok_or_else(|| "it is paraphrase, design, tune, restage or review".to_owned())
 }
 
 /// Shows the question.

@@ -107,11 +107,26 @@ pub fn show(summary: &Summary, accounts: &AccountSummary, dir: &Path) {
         summary.cases.len(),
     ));
     sentence(&format!("  {}", not_drawn(&accounts.facts)));
+    restagings(summary);
     reviews(summary);
     if summary.sample {
         println!("  the built-in sample, invented; give real crash files with --records FILE");
     }
     println!("report: {} (every scenario, crash types, why others are not told)", dir.join("report.html").display());
+}
+
+/// What the model made of the replays that changes scenarios.
+fn restagings(summary: &Summary) {
+    let Some((model, [as_staged, changed, not_content])) = summary.restagings() else { return };
+    let looked_at = as_staged + changed + not_content;
+    let stay = if not_content == 0 {
+        String::new()
+    } else {
+        format!("; {not_content} stay as staged, though it was not content: no change of them was taken")
+    };
+    sentence(&format!(
+        "{model} looks at {looked_at} replays of what the rules staged: {as_staged} are as told, {changed} it changed{stay}"
+    ));
 }
 
 /// What the model finds that holds replays against reports.

@@ -19,6 +19,7 @@ mod read;
 mod reconstruct;
 mod records;
 mod repeatable;
+mod restagings;
 mod reviews;
 mod second_reading;
 mod selection;

@@ -15,12 +15,12 @@ pub fn check_choices(suite: &Suite) -> Result<(), PipelineError> {
     suite.options().searcher.parse::<Searcher>().map_err(PipelineError::bad_input)?;
     super::invent::check(suite)?;
     let cast = &suite.options().cast;
-    let staged_by = [&cast.design, &cast.tune].into_iter().find(|name| *name != RULES);
-    if let (Tells::Accounts, Some(model)) = (suite.profile().records.tells, staged_by) {
+    if let (Tells::Accounts, true) = (suite.profile().records.tells, cast.tune != RULES) {
         return Err(PipelineError::bad_input(format!(
-            "the profile {} goes by accounts: a model may read reports there (paraphrase), and reconstructions and their variations are \
-             computed; {model} designs and tunes in suites that go by templates: choose the profile paper",
-            suite.profile().name
+            "the profile {} goes by accounts: a model may read reports there (paraphrase) and change what is staged of them (design); \
+             variations are computed, and {} tunes in suites that go by templates: choose the profile paper",
+            suite.profile().name,
+            cast.tune
         )));
     }
     if let (Tells::Templates, Some(model)) = (suite.profile().records.tells, &cast.review) {

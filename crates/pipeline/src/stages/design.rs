@@ -16,6 +16,7 @@ use recrash_model::narrative::Narrative;
 use recrash_model::scenario::{Author, ScenarioDraft};
 use recrash_model::selection::Cluster;
 use recrash_model::{Diagnostic, Outcome};
+use recrash_report::Changed;
 use serde::{Deserialize, Serialize};
 
 /// Designs of the rules that are tried before the best so far is taken.
@@ -99,6 +100,9 @@ pub struct DesignLog {
     /// What nobody told, and was chosen.
     #[serde(default)]
     pub assumed: Vec<String>,
+    /// What a model changed in what the rules staged of an account, change by change.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub changed: Vec<String>,
 }
 
 /// One try.
@@ -116,14 +120,33 @@ impl DesignLog {
     /// Of the rules alone, at the first try.
     pub(super) fn by_rules(attempt: DesignAttempt) -> Self {
         let attempts = vec![attempt];
-        Self { asked: RULES.into(), repairs: 0, attempts, taken: 0, gave_up: Vec::new(), assumed: Vec::new() }
+        Self { attempts, ..Self::asking(RULES) }
+    }
+
+    /// Before anything was tried.
+    fn asking(name: &str) -> Self {
+        Self {
+            asked: name.to_owned(),
+            repairs: 0,
+            attempts: Vec::new(),
+            taken: 0,
+            gave_up: Vec::new(),
+            assumed: Vec::new(),
+            changed: Vec::new(),
+        }
+    }
+
+    /// What a model changed, and which one.
+    pub(super) fn change(&self) -> Option<Changed> {
+        let what = self.changed.join("; ");
+        (!what.is_empty()).then(|| Changed { model: self.asked.clone(), what })
     }
 
     /// One word for tables: `rules`, `first answer`, `after repair` or `fallback`.
     pub fn outcome(&self) -> &'static str {
         match self.attempts.get(self.taken).map(|attempt| &attempt.draft.source.author) {
             _ if self.asked == RULES => "rules",
-            None | Some(Author::Rules) => "fallback",
+            None | Some(Author::Rules) if !self.gave_up.is_empty() => "fallback",
             _ if self.taken == 0 && self.repairs == 0 => "first answer",
             _ => "after repair",
         }
@@ -169,9 +192,7 @@ fn design_case(
     expectation: &Expectation,
     simulator: &dyn Simulator,
 ) -> Result<(ScenarioDraft, DesignLog), PipelineError> {
-    let asked = designers.first().map_or(RULES, |designer| designer.name).to_owned();
-    let mut log =
-        DesignLog { asked, repairs: 0, attempts: Vec::new(), taken: 0, gave_up: Vec::new(), assumed: Vec::new() };
+    let mut log = DesignLog::asking(designers.first().map_or(RULES, |designer| designer.name));
     for designer in designers {
         match design_by(designer, brief, narrative, expectation, simulator, &mut log.attempts)? {
             Course::Faithful => break,

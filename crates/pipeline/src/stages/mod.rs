@@ -15,6 +15,7 @@ mod narrate;
 mod own;
 mod records;
 mod report;
+mod restage;
 mod retold;
 mod review;
 mod run_summary;
@@ -30,6 +31,7 @@ pub(crate) use cases::Cases;
 pub use choices::check_choices;
 pub use design::{DesignAttempt, DesignLog};
 pub use failures::{Failure, unfaithful};
+pub(crate) use restage::question as restage_question;
 pub(crate) use review::Beside;
 pub use run_summary::RunSummary;
 pub use select::{SelectionStudy, StrategyStudy};
@@ -122,7 +124,11 @@ fn run(work: &StageWork) -> Result<StageReport, PipelineError> {
         _ => {
             let declared = case_stages(work.suite).into_iter().find(|declared| declared.stage == work.stage);
             let declared = declared.unwrap_or_else(|| unreachable!("every other stage works case by case"));
-            per_case(work, &declared, &Cases::read(work.suite)?)
+            let cases = Cases::read(work.suite)?;
+            if work.stage == Stage::Design && cases.accounts.is_some() {
+                restage::tell_cost(work, &declared, &cases)?;
+            }
+            per_case(work, &declared, &cases)
         }
     }
 }

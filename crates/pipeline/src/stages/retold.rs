@@ -3,8 +3,9 @@
 
 use super::ahead::Ahead;
 use super::cases::{case_seed, of_case, scenario, text_of};
+use super::restage::restaged;
 use super::tune::tune_options;
-use super::{Bench, CaseStage};
+use super::{Bench, CaseStage, player};
 use crate::error::PipelineError;
 use crate::files::json::{to_compact_json, to_json};
 use crate::models::cast::AgentLog;
@@ -41,7 +42,7 @@ pub(super) const DECLARED: [CaseStage; 5] = [
         stage: Stage::Design,
         reads: |id| vec![(Stage::Narrate, names::account(id))],
         editable: |id| vec![names::scenario(id)],
-        decides: |_| Ok(Vec::new()),
+        decides: |suite| Ok(vec![player(suite, &suite.options().cast.design)]),
         runs_ego: false,
         work: design,
     },
@@ -100,6 +101,7 @@ fn design(bench: &Bench, cluster: &Cluster) -> Result<Files, PipelineError> {
     let draft = named(staged.draft, bench, cluster);
     let attempt = DesignAttempt { draft: draft.clone(), diagnostics: Vec::new(), unfaithful: Some(Vec::new()) };
     let log = DesignLog { assumed: staged.assumed, ..DesignLog::by_rules(attempt) };
+    let (draft, log) = restaged(bench, cluster, &account, draft, log)?;
     Ok(vec![(names::scenario(id), to_json(&draft)), (names::design_log(id), to_json(&log))])
 }
 
@@ -163,14 +165,15 @@ fn tested_run(
     Ok(run)
 }
 
-/// What the account leaves open is searched for the nearest failure. A scenario that a person edited is nobody's staging any
-/// more, and stays as it is; so does one with nothing to test.
+/// What the account leaves open is searched for the nearest failure. A scenario that a person edited, or a model staged anew, is not
+/// the rules' staging any more, and stays as it is; so does one with nothing to test.
 fn tune(bench: &Bench, cluster: &Cluster) -> Result<Files, PipelineError> {
     let (suite, id) = (bench.suite, &cluster.scenario_id);
     let scenario = scenario(suite, id, &names::scenario(id))?;
     let design: DesignLog = suite.store().read_json(&names::design_log(id))?;
     let account = account(suite, id)?;
     let as_designed = design.attempts.get(design.taken).is_some_and(|taken| taken.draft == *scenario.draft());
+    let as_designed = as_designed && scenario.draft().source.author.is_rules();
     let open = if as_designed && scenario.draft().is_tested() { open_choices(&account) } else { Vec::new() };
     let first: JudgedRun = suite.store().read_json(&match scenario.draft().is_tested() {
         true => names::first_run(id),

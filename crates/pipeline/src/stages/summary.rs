@@ -20,6 +20,7 @@ use recrash_model::review::Review;
 use recrash_model::selection::{Coverage, EmbeddingInfo, StageTables, Strategy, TemplateCount};
 use recrash_model::template::Template;
 use recrash_model::triage::{FailureClass, Triage};
+use recrash_report::Changed;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -212,6 +213,9 @@ pub struct CaseSummary {
     /// What the failure of the tuned run is worth, and how the other egos fare there; absent where it does not fail.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub triage: Option<Triage>,
+    /// What a model changed in what the rules staged, where one was cast and did.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub changed: Option<Changed>,
     /// Why it went no further, where it did not.
     pub failure: Option<Failure>,
     /// Points the search scored.
@@ -273,6 +277,15 @@ impl Summary {
         wrong.sort_by_key(|(name, count)| (std::cmp::Reverse(*count), *name));
         let right = reviews.iter().filter(|review| review.is_right()).count();
         Some(Reviews { model, read: reviews.len(), right, wrong })
+    }
+
+    /// Which model looked at the replays of what the rules staged, how many scenarios it left as they are, changed, and was not content
+    /// with in the end; nothing where none is cast, or the suite goes by templates.
+    pub fn restagings(&self) -> Option<(&str, [usize; 3])> {
+        let model = self.models.iter().find(|model| self.accounts.is_some() && model.role == Role::Design.name())?;
+        let changed = self.cases.iter().filter(|case| case.changed.is_some()).count();
+        let content = model.first_answer + model.after_repair;
+        Some((&model.model, [content - changed.min(content), changed, model.fallback]))
     }
 
     /// Scenarios that went all the way.
@@ -374,6 +387,7 @@ impl CaseSummary {
             recorded: case.recorded.as_ref().map(|ran| RunSummary::new(&ran.run)),
             reviewed: case.review.as_ref().map(|reviewed| agent(&reviewed.agent)),
             review: case.review.as_ref().and_then(|reviewed| reviewed.review.clone()),
+            changed: case.design.as_ref().and_then(DesignLog::change),
             signs: case.recorded.as_ref().is_some_and(|ran| !ran.scenario.draft().control.is_empty()),
             situation_met: case.tuned.as_ref().and_then(|tuned| tuned.ran.run.situation_met()),
             first: case.first.as_ref().map(|ran| RunSummary::new(&ran.run)),

@@ -1,6 +1,7 @@
 //! The suite as the report sees it.
 
 use super::Cases;
+use super::DesignLog;
 use super::made::{Case, Ran};
 use super::review::Reviewed;
 use super::summary::Summary;
@@ -87,6 +88,7 @@ pub(super) fn row(suite: &Suite, cases: &Cases, position: usize, case: &Case) ->
         after: after.map(|(ran, file)| run_row(suite, ran, &file(id))),
         triage: case.triage.clone(),
         review: case.review.as_ref().and_then(Reviewed::by),
+        changed: case.design.as_ref().and_then(DesignLog::change),
         undriven: case.failure.as_ref().is_some_and(|at| DRIVEN_IN.iter().any(|stage| stage.name() == at.stage)),
         refused: case.failure.as_ref().map(ToString::to_string),
         edited: case.edited.clone(),

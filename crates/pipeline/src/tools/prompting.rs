@@ -5,7 +5,7 @@ use crate::models::cast::RULES;
 use crate::options::Options;
 use crate::progress::NoProgress;
 use crate::reading::scenarios::read_scenario;
-use crate::stages::{Beside, Cases, run_stage};
+use crate::stages::{Beside, Cases, restage_question, run_stage};
 use crate::suite::names;
 use crate::suite::{Resources, Stage, Suite};
 use recrash_agents::llm::{
@@ -14,6 +14,7 @@ use recrash_agents::llm::{
 use recrash_agents::{AgentError, Brief, Design, Paraphrase, Rules, expectation, parameters};
 use recrash_lab::Scoring;
 use recrash_lab::run_scenario;
+use recrash_model::account::Account;
 use recrash_model::narrative::Narrative;
 use recrash_model::run::JudgedRun;
 use recrash_model::scenario::ScenarioDraft;
@@ -78,7 +79,7 @@ pub fn prompt(request: &PromptRequest) -> Result<Prompt, PipelineError> {
     let cast = &suite.options().cast;
     let played = match request.role {
         Role::Paraphrase => cast.paraphrase.as_str(),
-        Role::Design => &cast.design,
+        Role::Design | Role::Restage => &cast.design,
         Role::Tune => &cast.tune,
         Role::Review => cast.review.as_deref().unwrap_or(RULES),
     };
@@ -89,6 +90,7 @@ pub fn prompt(request: &PromptRequest) -> Result<Prompt, PipelineError> {
     };
     let question = match request.role {
         Role::Review => about_replay(&suite, &cases, &cluster, model)?,
+        Role::Restage => about_staging(&suite, &cases, &cluster, model)?,
         role => question(&suite, &brief, role, model)?,
     };
     Ok(Prompt { format: "recrash.prompt/1".into(), prompts: prompts_version(), hash: question.hash(), question })
@@ -169,6 +171,17 @@ fn about_replay(suite: &Suite, cases: &Cases, cluster: &Cluster, model: &str) ->
     }
     let question = Beside::read(suite, cases, cluster)?.question(model);
     question.map_err(|e: AgentError| PipelineError::bad_input(e.to_string()))
+}
+
+/// A question about what the rules staged: there is none before they did, of a suite that goes by accounts.
+fn about_staging(suite: &Suite, cases: &Cases, cluster: &Cluster, model: &str) -> Result<Question, PipelineError> {
+    let id = &cluster.scenario_id;
+    if stored::<Account>(suite, &names::account(id)).is_none() {
+        return Err(PipelineError::bad_input(format!(
+            "nothing is staged of {id} yet: run a suite that goes by accounts, and name its folder"
+        )));
+    }
+    restage_question(suite, cases, cluster, model)
 }
 
 fn designed(suite: &Suite, brief: &Brief, narrative: &Narrative) -> Result<Scenario, PipelineError> {

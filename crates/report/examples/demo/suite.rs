@@ -454,6 +454,7 @@ fn row(case: &CaseView, cluster: &Cluster, position: usize) -> CaseRow {
         after: row(&case.after),
         triage: case.triage.clone(),
         review: None,
+        changed: None,
         undriven: false,
         refused: case.refused.clone(),
         edited: if position == 4 { vec![format!("4-scenarios/{}.json", case.scenario_id)] } else { Vec::new() },

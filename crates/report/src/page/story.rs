@@ -1,6 +1,7 @@
 //! The records a case came from, and the narrative made of them: every fact with the words it came from.
 
 use super::{Case, icon, parts};
+use crate::view::Changed;
 use crate::words::{self, LONGEST_TEXT};
 use maud::{Markup, html};
 use recrash_model::narrative::{Fact, FactSource, Narrative};
@@ -26,6 +27,7 @@ pub fn story(case: Case) -> Markup {
         .columns.story {
             div {
                 h2 { "Narrative of the scenario" }
+                @if let Some(changed) = &row.changed { (restaged(changed)) }
                 @match &case.view.narrative { Some(narrative) => (told(narrative, shown.first().map(|pick| &pick.id))), None => p.empty { "No narrative was written." } }
             }
             div {
@@ -52,6 +54,13 @@ fn reviewed(by: &ReviewBy) -> Markup {
             @if wrong.is_empty() { "the recorded driver's run shows it." }
             @else { "the recorded driver's run does not show it (" (wrong.join(", ")) "): " span dir="auto" { (words::clean(&by.review.note, LONGEST_NOTE)) } }
         }
+    }
+}
+
+/// What a language model changed in what the rules staged.
+fn restaged(changed: &Changed) -> Markup {
+    html! {
+        p.review { "Staged by the rules, and changed by " b { (words::clean(&changed.model, 80)) } ": " span dir="auto" { (words::clean(&changed.what, 4 * LONGEST_NOTE)) } }
     }
 }
 

@@ -1,0 +1,164 @@
+//! The role that stages anew: what a model would have otherwise in a scenario whose replay does not show the crash as it is told.
+
+use super::review::in_one_line;
+use super::{LanguageModel, fitting, prompts, push_repair, push_turns, read, restage_question};
+use crate::{AgentError, Brief};
+use recrash_model::metrics::Check;
+use recrash_model::scenario::{Actor, ActorPlan, Author, Control, GraphMap, MapSpec, ObjectSpec, Part, ScenarioDraft};
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+/// A scenario, and what the recorded driver's run of it shows.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Staging {
+    /// The scenario.
+    pub draft: ScenarioDraft,
+    /// The run in words.
+    pub replay: String,
+    /// Every told fact, and what the run shows of it.
+    pub checks: Vec<Check>,
+    /// Those without which it is not taken: they are shown otherwise, or no longer.
+    pub missed: Vec<Check>,
+    /// What was changed in it, change by change: what was told and shown otherwise before.
+    pub changed: Vec<String>,
+}
+
+/// The form of an answer: what of the scenario is otherwise. What is not named stays as it is.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(super) struct RestageAnswer {
+    /// Whether the last replay shows the crash as the reports tell it. Then nothing is changed.
+    as_told: bool,
+    /// Where it does not: what is told and what is shown instead, in one sentence. Else empty.
+    #[serde(default)]
+    #[schemars(length(max = 300))]
+    note: String,
+    /// How the subject vehicle drove, where that is otherwise.
+    #[serde(default)]
+    ego: Option<EgoAnswer>,
+    /// Road users that do or are something else, each whole; with a new id, one more.
+    #[serde(default)]
+    #[schemars(length(max = 32))]
+    actors: Vec<Actor>,
+    /// Ids of road users that are left out.
+    #[serde(default)]
+    #[schemars(length(max = 32))]
+    without: Vec<String>,
+    /// All things that stand or lie, where one of them is otherwise.
+    #[serde(default)]
+    #[schemars(length(max = 64))]
+    objects: Option<Vec<ObjectSpec>>,
+    /// All signals and signs, where one of them is otherwise.
+    #[serde(default)]
+    #[schemars(length(max = 32))]
+    control: Option<Vec<Control>>,
+    /// All roads and junctions, where one of them is otherwise.
+    #[serde(default)]
+    map: Option<GraphMap>,
+    /// The rollout ends after this time at the latest, 1 to 60. [s]
+    #[serde(default)]
+    #[schemars(range(min = 1.0, max = 60.0))]
+    duration_s: Option<f64>,
+}
+
+/// What a model decides of the subject vehicle.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+struct EgoAnswer {
+    /// How its recorded driver drove.
+    recorded: ActorPlan,
+    /// The roads it is to take, with direction, where they are others.
+    #[serde(default)]
+    route: Option<Vec<String>>,
+    /// Its lane at the start, 0 is the leftmost, where it is another.
+    #[serde(default)]
+    lane: Option<u8>,
+    /// What sticks out of its body, where that is otherwise.
+    #[serde(default)]
+    parts: Option<Vec<Part>>,
+}
+
+impl RestageAnswer {
+    /// The scenario with what is otherwise in it.
+    ///
+    /// # Errors
+    /// Nothing is otherwise, nobody says why, or somebody is left out who is not there.
+    fn applied(self, draft: &ScenarioDraft, model: &str) -> Result<ScenarioDraft, Vec<String>> {
+        let mut problems = Vec::new();
+        if in_one_line(&self.note).is_empty() {
+            problems.push("note is empty: say in one sentence what is told and what is shown instead".to_owned());
+        }
+        let missing = self.without.iter().filter(|id| !draft.actors.iter().any(|actor| actor.id == **id));
+        problems.extend(missing.map(|id| format!("without names {id}, and there is no such road user")));
+        let mut next = draft.clone();
+        next.actors.retain(|actor| !self.without.contains(&actor.id));
+        for actor in self.actors {
+            match next.actors.iter_mut().find(|known| known.id == actor.id) {
+                Some(known) => *known = actor,
+                None => next.actors.push(actor),
+            }
+        }
+        if let Some(EgoAnswer { recorded, route, lane, parts }) = self.ego {
+            next.ego.recorded = Some(recorded);
+            next.ego.route = route.unwrap_or(next.ego.route);
+            next.ego.lane = lane.unwrap_or(next.ego.lane);
+            next.ego.parts = parts.unwrap_or(next.ego.parts);
+        }
+        next.objects = self.objects.unwrap_or(next.objects);
+        next.control = self.control.unwrap_or(next.control);
+        next.map = self.map.map_or(next.map, MapSpec::G);
+        next.duration_s = self.duration_s.unwrap_or(next.duration_s);
+        if next == *draft {
+            problems.push("as_told is false, and nothing is otherwise in the answer".to_owned());
+        }
+        next.source.author = Author::Model(model.to_owned());
+        if problems.is_empty() { Ok(next) } else { Err(problems) }
+    }
+}
+
+impl LanguageModel<'_> {
+    /// Has the model look at the replay of a staging, and change the scenario until it finds the crash shown as it is told; every
+    /// changed scenario is staged by `stage`, and its replay goes back. Gives the one that the model is content with: that which it was
+    /// given, where it changed nothing.
+    ///
+    /// # Errors
+    /// [`AgentError`], where the answers are used up before the model is content with a scenario that misses no told fact.
+    pub fn restage(
+        &self,
+        brief: &Brief,
+        given: Staging,
+        stage: impl Fn(ScenarioDraft) -> Result<Staging, Vec<String>>,
+    ) -> Result<Staging, AgentError> {
+        let mut question = restage_question(self.model, brief, &given)?;
+        let mut now = given;
+        loop {
+            let exchange = self.answers.answer(&question)?;
+            let answered = read(&exchange.answer, &[], &question.schema).and_then(fitting::<RestageAnswer>);
+            let of_form = answered.is_err();
+            let step = match answered {
+                Ok(answer) if answer.as_told && now.missed.is_empty() => return Ok(now),
+                Ok(answer) if answer.as_told => Err(vec![prompts::missed(&now.missed)]),
+                Ok(answer) => {
+                    let note = in_one_line(&answer.note);
+                    answer.applied(&now.draft, self.model).and_then(&stage).map(|next| (next, note))
+                }
+                Err(problems) => Err(problems),
+            };
+            let granted =
+                if of_form { self.repairs.form(self.max_repairs) } else { self.repairs.meaning(self.max_repairs) };
+            match step {
+                Err(problems) if !granted => return Err(self.no_usable_answer(&problems)),
+                Ok(_) if !granted => {
+                    let why = format!("it is not content after {} changes", self.max_repairs);
+                    return Err(self.no_usable_answer(&[why]));
+                }
+                Err(problems) => push_repair(&mut question, exchange.answer, &problems)?,
+                Ok((next, note)) => {
+                    push_turns(&mut question, exchange.answer, prompts::restaged(&next)?);
+                    let changed = now.changed.into_iter().chain([note]).collect();
+                    now = Staging { changed, ..next };
+                }
+            }
+        }
+    }
+}

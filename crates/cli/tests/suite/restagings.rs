@@ -1,0 +1,138 @@
+//! A language model looks at replays of what the rules staged, and changes what they do not show as told.
+
+use crate::common::server::{Reply, Server};
+use crate::common::{FEW, recrash};
+use crate::live::{Folder, ledger, read, shares, shown};
+use serde_json::{Value, json};
+use std::path::Path;
+use std::process::Output;
+
+fn run(out: &Path, more: &[&str]) -> Output {
+    recrash(&["run", "--profile", "open", "--records", FEW, "--budget", "4", "--tune-budget", "6"])
+        .args(["--out", out.to_str().unwrap()])
+        .args(more)
+        .output()
+        .unwrap()
+}
+
+fn done(out: &Path, more: &[&str]) -> String {
+    let output = run(out, more);
+    assert!(output.status.success(), "{}", shown(&output));
+    shown(&output)
+}
+
+fn cases(out: &Path) -> Vec<Value> {
+    read(&out.join("summary.json"))["cases"].as_array().unwrap().clone()
+}
+
+fn scenario(out: &Path, case: &Value) -> Value {
+    read(&out.join(format!("4-scenarios/{}.json", case["id"].as_str().unwrap())))
+}
+
+/// A bystander far off the road.
+fn bystander() -> Value {
+    json!({"id": "bystander", "kind": "pedestrian", "plan": {"start": {"x_m": 0.0, "y_m": 60.0}}})
+}
+
+/// A server that answers the questions about these reports so, until it has seen a change, and is content with all others.
+fn server(answers: Vec<(String, Value)>) -> Server {
+    Server::start(move |request| {
+        let turns = request.messages();
+        let asked = turns[1]["content"].as_str().unwrap();
+        assert!(asked.starts_with("Look at the replay of a scenario"), "{turns:?}");
+        assert!(asked.contains("| ego 0.0 m along") && asked.contains("\"recorded\":"), "{asked}");
+        let of = answers.iter().find(|(report, _)| asked.contains(&format!("Report {report}.")));
+        let last = turns.last().unwrap()["content"].as_str().unwrap();
+        let content = json!({"as_told": true, "note": ""});
+        Reply::Text(
+            of.filter(|_| !last.contains("misses no told fact"))
+                .map_or(content, |(_, answer)| answer.clone())
+                .to_string(),
+        )
+    })
+}
+
+#[test]
+fn a_change_that_keeps_all_told_facts_is_taken_and_one_that_loses_them_is_not() {
+    let (plain, folder) = (Folder::new(), Folder::new());
+    done(&plain.suite(), &[]);
+    let before = cases(&plain.suite());
+    let ids = |out: &Path, case: &Value| -> Vec<String> {
+        let all = scenario(out, case)["actors"].as_array().cloned().unwrap_or_default();
+        all.iter().map(|actor| actor["id"].as_str().unwrap().to_owned()).collect()
+    };
+    let beside = (1..4).find(|at| ids(&plain.suite(), &before[*at]).contains(&"cp".to_owned())).expect("a partner");
+    let report = |at: usize| before[at]["told"].as_str().unwrap().to_owned();
+    let note = "Told is a bystander,\n<b>shown</b> is none.";
+    let changed = json!({"as_told": false, "note": note, "actors": [bystander()]});
+    let lost = json!({"as_told": false, "note": "nobody came", "without": ["cp"]});
+    let server = server(vec![(report(0), changed), (report(beside), lost)]);
+    let asked = ["--design", "scripted", "--repairs", "1", "--base-url", &server.base_url];
+    let out = folder.suite();
+    let text = done(&out, &asked);
+    assert!(
+        text.contains("scripted looks at 4 of 4 replays, and changes what they do not show as told: about "),
+        "{text}"
+    );
+    let told = "scripted looks at 4 replays of what the rules staged: 2 are as told, 1 it changed; 1 stay as staged";
+    assert!(text.contains(told), "{text}");
+
+    let now = cases(&out);
+    assert!(ids(&out, &now[0]).contains(&"bystander".to_owned()));
+    for (at, case) in now.iter().enumerate() {
+        assert_eq!(case["recorded"]["faithful"], before[at]["recorded"]["faithful"], "{case}");
+        let (old, new) = (scenario(&plain.suite(), case), scenario(&out, case));
+        assert_eq!(old == new, at != 0, "{at}");
+    }
+    // What a model staged is nobody's to vary: the tests run in it as it is.
+    assert_eq!(scenario(&out, &now[0])["source"]["author"], json!({"model": "scripted"}));
+    assert_eq!(now[0]["points"], 1);
+    assert_eq!(now[0]["changed"]["what"], "Told is a bystander, <b>shown</b> is none.");
+    assert_eq!(shares(&read(&out.join("summary.json")), "design"), [2, 1, 1]);
+    let why = now[beside]["designed"]["why"].as_str().unwrap();
+    assert!(why.contains("gave no usable answer") && now[beside]["changed"].is_null(), "{why}");
+    let results = std::fs::read_to_string(out.join("results.csv")).unwrap();
+    assert!(results.contains("\"Told is a bystander, <b>shown</b> is none.\""), "{results}");
+    let id = now[0]["id"].as_str().unwrap();
+    let page = std::fs::read_to_string(out.join(format!("report/{id}.js"))).unwrap();
+    assert!(page.contains("and changed by ") && !page.contains("<b>shown"), "{page}");
+
+    // Nothing is asked again; the ledger alone gives the same scenarios; `prompt` shows what was asked.
+    let requests = server.requests().len();
+    done(&out, &asked);
+    assert_eq!(server.requests().len(), requests);
+    let prompt = recrash(&["prompt", "restage", "--json", "--out", out.to_str().unwrap()]).output().unwrap();
+    let prompt: Value = serde_json::from_slice(&prompt.stdout).unwrap_or_else(|e| panic!("{e}: {}", shown(&prompt)));
+    assert!(ledger(&out).iter().any(|exchange| exchange["hash"] == prompt["hash"]));
+    let other = Folder::new();
+    std::fs::create_dir_all(other.suite().join("ledger")).unwrap();
+    for file in std::fs::read_dir(out.join("ledger")).unwrap().map(|entry| entry.unwrap().path()) {
+        std::fs::copy(&file, other.suite().join("ledger").join(file.file_name().unwrap())).unwrap();
+    }
+    std::fs::copy(out.join("suite.json"), other.suite().join("suite.json")).unwrap();
+    done(&other.suite(), &["--design", "scripted", "--repairs", "1", "--llm", "replay"]);
+    assert_eq!(scenario(&other.suite(), &now[0]), scenario(&out, &now[0]));
+
+    // Without the model the rules' scenarios are back.
+    done(&out, &["--design", "rules"]);
+    for case in &before {
+        assert_eq!(scenario(&out, case), scenario(&plain.suite(), case));
+    }
+}
+
+#[test]
+fn a_batch_waits_for_them_and_a_model_that_tunes_is_refused() {
+    let folder = Folder::new();
+    let output = run(&folder.suite(), &["--design", "scripted", "--llm", "batch"]);
+    assert_eq!(output.status.code(), Some(4), "{}", shown(&output));
+    let requests = std::fs::read_to_string(folder.suite().join("requests.jsonl")).unwrap();
+    assert_eq!(requests.lines().count(), 4);
+    let other = Folder::new();
+    let output = run(&other.suite(), &["--tune", "scripted", "--llm", "batch"]);
+    assert_eq!(output.status.code(), Some(3), "{}", shown(&output));
+    assert!(
+        shown(&output).contains("goes by accounts") && shown(&output).contains("variations are computed"),
+        "{}",
+        shown(&output)
+    );
+}

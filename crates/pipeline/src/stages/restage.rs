@@ -1,0 +1,182 @@
+//! A language model looks at the replay of what the rules staged of an account, and changes the scenario where that does not show the crash
+//! as the reports tell it. What it makes is run and held against the account like the rules' own; where it is never content, theirs stays.
+
+use super::design::{DesignAttempt, DesignLog};
+use super::{Bench, CaseStage, Cases, StageWork, case_inputs, retold, unit_name};
+use crate::error::PipelineError;
+use crate::models::cast::{RULES, unusable};
+use crate::progress::ProgressEvent;
+use crate::suite::{Stage, Suite, Work, names};
+use recrash_agents::llm::{Question, Repairs, Staging, restage_question};
+use recrash_lab::replay;
+use recrash_model::account::Account;
+use recrash_model::metrics::{Check, CheckResult};
+use recrash_model::rollout::{ActorState, Rollout, STEP_S};
+use recrash_model::scenario::{EgoSpec, ScenarioDraft};
+use recrash_model::selection::Cluster;
+use recrash_reconstruct::{Reconstruction, held_against};
+use recrash_roads::Simulator;
+use recrash_sim::{Ego, Native};
+use std::cell::RefCell;
+
+/// The system under test takes over this long before the contact, and this long before the ego began to stop. [s]
+const HANDOVER_BEFORE_S: f64 = 5.0;
+const ROLLS_S: f64 = 1.0;
+/// Who is slower stands. [m/s]
+const STANDS_MPS: f64 = 0.1;
+/// Bytes of a first question, about: reports, scenario, replay and the schema.
+const QUESTION_BYTES: usize = 48_000;
+
+/// The model that is cast, where the suite goes by accounts.
+fn designer(suite: &Suite) -> Option<&str> {
+    Some(suite.options().cast.design.as_str()).filter(|name| *name != RULES)
+}
+
+/// What the model makes of what the rules staged, and how it came to that; as it is where no model is cast.
+///
+/// # Errors
+/// An answer is still to come, or the run has to stop.
+pub(super) fn restaged(
+    bench: &Bench,
+    cluster: &Cluster,
+    account: &Account,
+    draft: ScenarioDraft,
+    log: DesignLog,
+) -> Result<(ScenarioDraft, DesignLog), PipelineError> {
+    let suite = bench.suite;
+    let Some((models, name)) = suite.models().zip(designer(suite)) else { return Ok((draft, log)) };
+    let (given, of_rules) = rehearse(account, draft.clone(), &[])
+        .map_err(|problems| PipelineError::scenario(&cluster.scenario_id, problems.join("; ")))?;
+    let records = bench.cases.records_of(cluster);
+    let brief = bench.cases.brief(suite, cluster, &records, Some(account));
+    let (repairs, attempts) = (Repairs::default(), RefCell::new(log.attempts.clone()));
+    let shown: Vec<Check> = given.checks.iter().filter(|check| check.result == CheckResult::Shown).cloned().collect();
+    let stage = |draft: ScenarioDraft| {
+        let (mut staged, rollout) = rehearse(account, draft, &shown)?;
+        hand_over(&mut staged.draft.ego, &rollout, (&given.draft.ego, &of_rules));
+        let (draft, unfaithful) = (staged.draft.clone(), Some(staged.missed.clone()));
+        attempts.borrow_mut().push(DesignAttempt { draft, diagnostics: Vec::new(), unfaithful });
+        Ok(staged)
+    };
+    let made = models.model(name, &suite.options().cast, &repairs).restage(&brief, given.clone(), stage);
+    let mut log = DesignLog { asked: name.to_owned(), repairs: repairs.all(), attempts: attempts.into_inner(), ..log };
+    let taken = match made {
+        Ok(staging) => {
+            log.changed = staging.changed;
+            staging.draft
+        }
+        Err(error) => {
+            log.gave_up.push(unusable(error)?);
+            draft
+        }
+    };
+    log.taken = log.attempts.iter().rposition(|attempt| attempt.draft == taken).unwrap_or(0);
+    Ok((taken, log))
+}
+
+/// The first question about what the rules staged of a case.
+///
+/// # Errors
+/// Its account or its design is not there, or cannot be read or run.
+pub(crate) fn question(
+    suite: &Suite,
+    cases: &Cases,
+    cluster: &Cluster,
+    model: &str,
+) -> Result<Question, PipelineError> {
+    let (id, records) = (&cluster.scenario_id, cases.records_of(cluster));
+    let (account, log): (Account, DesignLog) =
+        (retold::account(suite, id)?, suite.store().read_json(&names::design_log(id))?);
+    let draft = log.attempts.into_iter().next().map(|first| first.draft).ok_or_else(|| suite.stale(Stage::Design))?;
+    let (given, _) = rehearse(&account, draft, &[]).map_err(|why| PipelineError::scenario(id, why.join("; ")))?;
+    let brief = cases.brief(suite, cluster, &records, Some(&account));
+    restage_question(model, &brief, &given).map_err(|e| PipelineError::bad_input(e.to_string()))
+}
+
+/// Runs the recorded driver in a scenario, and holds what comes of it against the account. `shown` are facts that it may not lose.
+///
+/// # Errors
+/// It cannot be run.
+fn rehearse(account: &Account, draft: ScenarioDraft, shown: &[Check]) -> Result<(Staging, Rollout), Vec<String>> {
+    let scenario = recrash_roads::check(draft)
+        .map_err(|why| why.iter().filter(|told| told.is_error()).map(ToString::to_string).collect::<Vec<_>>())?
+        .value;
+    let rollout = Native::new(Ego::Recorded).run(&scenario).map_err(|why| vec![why.to_string()])?;
+    let verdict = held_against(account, &scenario, &rollout).map_err(|why| vec![why.label().to_owned()])?;
+    let replay = replay::in_words(scenario.draft(), &rollout);
+    let made = Reconstruction { draft: scenario.draft().clone(), rollout, verdict, assumed: Vec::new() };
+    let left_open = made.missed();
+    let is_missed = |check: &&Check| {
+        let lost = || shown.iter().any(|other| check.kind == other.kind && check.expected == other.expected);
+        check.result == CheckResult::NotShown
+            || left_open == Some(check)
+            || check.result != CheckResult::Shown && lost()
+    };
+    let missed = made.verdict.checks.iter().filter(is_missed).cloned().collect();
+    let Reconstruction { draft, rollout, verdict, .. } = made;
+    Ok((Staging { draft, replay, checks: verdict.checks, missed, changed: Vec::new() }, rollout))
+}
+
+/// Has the system under test take over some time before the contact, and before the ego began to stop; as in what the rules staged, where
+/// neither the ego nor the time of its contact is another.
+fn hand_over(ego: &mut EgoSpec, rollout: &Rollout, (of_rules, before): (&EgoSpec, &Rollout)) {
+    let contact = |rollout: &Rollout| rollout.first_contact_of(0).map(|(time_s, _)| time_s);
+    let Some(contact_s) = contact(rollout) else { return };
+    if ego.recorded == of_rules.recorded && contact(before) == Some(contact_s) {
+        return;
+    }
+    let until = ((contact_s / STEP_S) as usize).min(rollout.steps() - 1);
+    let speeds: Vec<f64> = rollout.ego_track().states[..=until].iter().map(ActorState::speed).collect();
+    ego.handover_s = of_rules.handover_s.map(|_| handover_s(&speeds, contact_s));
+    ego.target_speed_mps = speeds.iter().copied().fold(of_rules.target_speed_mps, f64::max);
+}
+
+/// When that is, by the speeds of the ego until its contact, step by step. [s]
+fn handover_s(speeds: &[f64], contact_s: f64) -> f64 {
+    let stands = speeds.iter().rposition(|speed| speed.abs() > STANDS_MPS).map_or(0, |last| last + 1);
+    let before_s = contact_s - HANDOVER_BEFORE_S;
+    if stands == speeds.len() {
+        return before_s.max(0.0);
+    }
+    let braked = (1..=stands).rev().find(|&step| speeds[step - 1] <= speeds[step]).unwrap_or(0);
+    (braked as f64 * STEP_S - ROLLS_S).min(before_s).max(0.0)
+}
+
+/// Says before the first question how many replays are looked at, and what that costs about.
+pub(super) fn tell_cost(work: &StageWork, declared: &CaseStage, cases: &Cases) -> Result<(), PipelineError> {
+    let suite = work.suite;
+    let Some((models, name)) = suite.models().zip(designer(suite)) else { return Ok(()) };
+    let clusters = cases.up_to(suite, Stage::Design);
+    let is_open = |cluster: &&Cluster| -> Result<bool, PipelineError> {
+        let id = &cluster.scenario_id;
+        let (unit, inputs) = (unit_name(Stage::Design, id), case_inputs(suite, declared, cases, cluster)?);
+        Ok(suite.must_be_current(Stage::Design, &Work { name: &unit, inputs: &inputs, editable: &[] }).is_err())
+    };
+    let open: Vec<bool> = clusters.iter().map(is_open).collect::<Result<_, _>>()?;
+    let count = open.into_iter().filter(|open| *open).count();
+    if count > 0 {
+        let cost = models.estimate(name, count * QUESTION_BYTES, count);
+        let what = format!(
+            "{name} looks at {count} of {} replays, and changes what they do not show as told: {cost}, and as much again for each change",
+            clusters.len()
+        );
+        work.progress.event(ProgressEvent::Said { what: &what });
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_system_takes_over_while_the_ego_still_rolls() {
+        // It drives at 5 m/s, brakes from 4 s on and stands from 6.5 s on; the contact comes at 9 s.
+        let speed = |step: usize| (5.0 - 2.0 * (step as f64 * STEP_S - 4.0).max(0.0)).max(0.0);
+        let stops: Vec<f64> = (0..=90).map(speed).collect();
+        assert!((handover_s(&stops, 9.0) - 3.0).abs() < 1e-9, "{}", handover_s(&stops, 9.0));
+        assert_eq!(handover_s(&[5.0; 91], 9.0), 4.0);
+        assert_eq!(handover_s(&[0.0; 91], 9.0), 0.0, "it stood from the start");
+        assert_eq!(handover_s(&[5.0; 31], 3.0), 0.0);
+    }
+}
