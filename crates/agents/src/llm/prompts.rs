@@ -160,7 +160,7 @@ fn staging_form(draft: &ScenarioDraft) -> Value {
     let ego = &draft.ego;
     json!({
         "map": draft.map,
-        "ego": {"kind": ego.kind, "size": ego.size, "parts": ego.parts, "lane": ego.lane, "route": ego.route, "recorded": ego.recorded},
+        "ego": {"kind": ego.kind, "size": ego.size, "parts": ego.parts, "lane": ego.lane, "route": ego.route, "stops": ego.stops, "recorded": ego.recorded},
         "actors": draft.actors, "objects": draft.objects, "control": draft.control, "duration_s": draft.duration_s,
     })
 }

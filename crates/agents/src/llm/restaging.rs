@@ -4,7 +4,9 @@ use super::review::in_one_line;
 use super::{LanguageModel, fitting, prompts, push_repair, push_turns, read, restage_question};
 use crate::{AgentError, Brief};
 use recrash_model::metrics::Check;
-use recrash_model::scenario::{Actor, ActorPlan, Author, Control, GraphMap, MapSpec, ObjectSpec, Part, ScenarioDraft};
+use recrash_model::scenario::{
+    Actor, ActorPlan, Author, Control, GraphMap, MapSpec, MissionStop, ObjectSpec, Part, ScenarioDraft,
+};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -73,6 +75,10 @@ struct EgoAnswer {
     /// Its lane at the start, 0 is the leftmost, where it is another.
     #[serde(default)]
     lane: Option<u8>,
+    /// Where its task has it stop, where that is otherwise.
+    #[serde(default)]
+    #[schemars(length(max = 16))]
+    stops: Option<Vec<MissionStop>>,
     /// What sticks out of its body, where that is otherwise.
     #[serde(default)]
     parts: Option<Vec<Part>>,
@@ -98,10 +104,11 @@ impl RestageAnswer {
                 None => next.actors.push(actor),
             }
         }
-        if let Some(EgoAnswer { recorded, route, lane, parts }) = self.ego {
+        if let Some(EgoAnswer { recorded, route, lane, stops, parts }) = self.ego {
             next.ego.recorded = Some(recorded);
             next.ego.route = route.unwrap_or(next.ego.route);
             next.ego.lane = lane.unwrap_or(next.ego.lane);
+            next.ego.stops = stops.unwrap_or(next.ego.stops);
             next.ego.parts = parts.unwrap_or(next.ego.parts);
         }
         next.objects = self.objects.unwrap_or(next.objects);
