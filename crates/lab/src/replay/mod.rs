@@ -2,9 +2,12 @@
 //! what is there and what moves, seen from the ego, and nothing of what anybody thinks of it.
 
 mod ground;
+mod plane;
 mod strips;
 #[cfg(test)]
 mod tests;
+
+pub use plane::in_the_plane;
 
 use recrash_metrics::contact::contact_geometry;
 use recrash_model::geometry::{OrientedBox, Vec2};

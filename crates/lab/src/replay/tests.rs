@@ -8,7 +8,7 @@ fn replay(json: &str) -> String {
     let draft = recrash_roads::read_draft(json).expect("a scenario of ours").value;
     let scenario = recrash_roads::check(draft).expect("it can be run").value;
     let rollout = Native::new(Ego::Recorded).run(&scenario).expect("the native simulator runs everything");
-    in_words(scenario.draft(), &rollout)
+    in_words(scenario.draft(), &rollout) + &in_the_plane(&rollout)
 }
 
 #[track_caller]
@@ -33,6 +33,7 @@ fn who_stands_at_a_signal_and_who_comes_from_behind_is_told() {
             " behind, ",
             "ego and cp touch: rear of ego on front of cp",
             "It ends at ",
+            "Centres in the plane (x m, y m, heading deg):\n 0.0 s: ego (",
         ],
     );
     assert_eq!(told, replay(include_str!("../../../../cases/crashes/01-rear-end-at-red.json")));

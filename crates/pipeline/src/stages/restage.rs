@@ -103,7 +103,7 @@ fn rehearse(account: &Account, draft: ScenarioDraft, shown: &[Check]) -> Result<
         .value;
     let rollout = Native::new(Ego::Recorded).run(&scenario).map_err(|why| vec![why.to_string()])?;
     let verdict = held_against(account, &scenario, &rollout).map_err(|why| vec![why.label().to_owned()])?;
-    let replay = replay::in_words(scenario.draft(), &rollout);
+    let replay = replay::in_words(scenario.draft(), &rollout) + &replay::in_the_plane(&rollout);
     let made = Reconstruction { draft: scenario.draft().clone(), rollout, verdict, assumed: Vec::new() };
     let left_open = made.missed();
     let is_missed = |check: &&Check| {

@@ -1,0 +1,46 @@
+//! Where everybody is in the coordinates of the scenario, for who changes it.
+
+use super::{degrees, first_contact_step, is_touch};
+use recrash_model::rollout::{ActorTrack, Role, Rollout, STEP_S};
+
+/// Steps between two lines.
+const LINE_STEPS: usize = 10;
+
+/// Centres and headings in the plane, every second and at the first contact; of a run in which the ego touches nobody, how near it came
+/// to each.
+pub fn in_the_plane(rollout: &Rollout) -> String {
+    let contact = first_contact_step(rollout);
+    let users: Vec<&ActorTrack> = rollout.actors.iter().filter(|actor| actor.role != Role::Part).collect();
+    let place = |actor: &ActorTrack, step: usize| {
+        let state = &actor.states[step];
+        let (at, heading) = (state.position(), degrees(state.heading));
+        format!("{} ({:.2}, {:.2}, {heading})", actor.id, at.x, at.y)
+    };
+    let line = |step: usize| {
+        let there = users.iter().filter(|actor| actor.is_present(step));
+        format!(
+            "{:4.1} s: {}",
+            step as f64 * STEP_S,
+            there.map(|actor| place(actor, step)).collect::<Vec<_>>().join(", ")
+        )
+    };
+    let mut lines = vec!["Centres in the plane (x m, y m, heading deg):".to_owned()];
+    lines.extend((0..=contact).filter(|step| *step == contact || step.is_multiple_of(LINE_STEPS)).map(line));
+    if !rollout.events.iter().any(is_touch) {
+        lines.extend(users[1..].iter().filter_map(|other| nearest(users[0], other)));
+    }
+    lines.join("\n") + "\n"
+}
+
+/// How near two came to each other, and where both were then.
+fn nearest(ego: &ActorTrack, other: &ActorTrack) -> Option<String> {
+    let gap = |step: usize| ego.outline(step).gap(&other.outline(step));
+    let there = (0..ego.states.len()).filter(|step| other.is_present(*step));
+    let (gap_m, step) = there.map(|step| (gap(step), step)).min_by(|a, b| a.0.total_cmp(&b.0))?;
+    let at = |actor: &ActorTrack| {
+        let place = actor.states[step].position();
+        format!("({:.2}, {:.2}, {})", place.x, place.y, degrees(actor.states[step].heading))
+    };
+    let time_s = step as f64 * STEP_S;
+    Some(format!("Least gap of ego and {}: {gap_m:.2} m at {time_s:.1} s, at {} and {}", other.id, at(ego), at(other)))
+}
