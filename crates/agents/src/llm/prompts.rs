@@ -11,7 +11,7 @@ use recrash_model::metrics::{Check, CheckResult, Metrics};
 use recrash_model::narrative::Narrative;
 use recrash_model::profile::SystemProfile;
 use recrash_model::record::{Coded, CrashRecord};
-use recrash_model::scenario::ScenarioDraft;
+use recrash_model::scenario::{MapSpec, ScenarioDraft};
 use recrash_model::template::Template;
 use recrash_model::tuning::{Parameter, Score, TunePoint};
 use recrash_model::zones::ContactZone;
@@ -157,9 +157,15 @@ fn fact(check: &Check) -> String {
 
 /// What of a reconstruction a model may change, and what it must know beside that.
 fn staging_form(draft: &ScenarioDraft) -> Value {
-    let ego = &draft.ego;
+    let (ego, map) = (
+        &draft.ego,
+        match &draft.map {
+            MapSpec::G(network) => json!(network),
+            block => json!(block),
+        },
+    );
     json!({
-        "map": draft.map,
+        "map": map,
         "ego": {"kind": ego.kind, "size": ego.size, "parts": ego.parts, "lane": ego.lane, "route": ego.route, "stops": ego.stops, "recorded": ego.recorded},
         "actors": draft.actors, "objects": draft.objects, "control": draft.control, "duration_s": draft.duration_s,
     })

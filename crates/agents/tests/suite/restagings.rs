@@ -141,11 +141,7 @@ fn the_worked_example_is_taken_and_shows_what_it_says() {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("prompts/restage_oncoming.json");
     let example: Value = serde_json::from_slice(&std::fs::read(file).unwrap()).unwrap();
     let told = &example["scenario"];
-    let map: GraphMap = {
-        let mut map = told["map"].clone();
-        map.as_object_mut().unwrap().remove("type");
-        serde_json::from_value(map).unwrap()
-    };
+    let map: GraphMap = serde_json::from_value(told["map"].clone()).unwrap();
     let ego = EgoSpec {
         recorded: serde_json::from_value(told["ego"]["recorded"].clone()).unwrap(),
         route: vec!["main+".into()],
