@@ -26,6 +26,7 @@ mod review;
 mod schema;
 mod secrets;
 mod spending;
+mod staging;
 mod wire;
 
 pub use access::LiveOptions;
@@ -37,9 +38,9 @@ pub use prices::{ModelPrice, PriceTable, plain_name};
 pub use prompts::{TuneBrief, version as prompts_version};
 pub use question::{Asked, EXCHANGE_FORMAT, Exchange, Purpose, Question, Role, Speaker, Turn};
 pub use repairs::Repairs;
-pub use restaging::Staging;
 pub use secrets::{Scrubber, Secret};
 pub use spending::{Caps, Spending, Spent};
+pub use staging::Staging;
 
 use crate::{AgentError, Brief, Design, Feedback, Paraphrase, Problem};
 use reading::AccountAnswer;

@@ -3,7 +3,7 @@
 
 use crate::llm::question::{Role, sha256};
 use crate::llm::reading::AccountAnswer;
-use crate::llm::restaging::Staging;
+use crate::llm::staging::Staging;
 use crate::{AgentError, Brief};
 use minijinja::value::Serde;
 use minijinja::{Environment, context};

@@ -1,29 +1,14 @@
 //! The role that stages anew: what a model would have otherwise in a scenario whose replay does not show the crash as it is told.
 
 use super::review::in_one_line;
+use super::staging::Staging;
 use super::{LanguageModel, fitting, prompts, push_repair, push_turns, read, restage_question};
 use crate::{AgentError, Brief};
-use recrash_model::metrics::Check;
 use recrash_model::scenario::{
     Actor, ActorPlan, Author, Control, GraphMap, MapSpec, MissionStop, ObjectSpec, Part, ScenarioDraft,
 };
 use schemars::JsonSchema;
 use serde::Deserialize;
-
-/// A scenario, and what the recorded driver's run of it shows.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Staging {
-    /// The scenario.
-    pub draft: ScenarioDraft,
-    /// The run in words.
-    pub replay: String,
-    /// Every told fact, and what the run shows of it.
-    pub checks: Vec<Check>,
-    /// Those without which it is not taken: they are shown otherwise, or no longer.
-    pub missed: Vec<Check>,
-    /// What was changed in it, change by change: what was told and shown otherwise before.
-    pub changed: Vec<String>,
-}
 
 /// The form of an answer: what of the scenario is otherwise. What is not named stays as it is.
 #[derive(Debug, Deserialize, JsonSchema)]

@@ -2,7 +2,7 @@
 //! as the reports tell it. What it makes is run and held against the account like the rules' own; where it is never content, theirs stays.
 
 use super::design::{DesignAttempt, DesignLog};
-use super::{Bench, CaseStage, Cases, StageWork, case_inputs, retold, unit_name};
+use super::{Bench, CaseStage, Cases, StageWork, case_inputs, unit_name};
 use crate::error::PipelineError;
 use crate::models::cast::{RULES, unusable};
 use crate::progress::ProgressEvent;
@@ -85,8 +85,8 @@ pub(crate) fn question(
     model: &str,
 ) -> Result<Question, PipelineError> {
     let (id, records) = (&cluster.scenario_id, cases.records_of(cluster));
-    let (account, log): (Account, DesignLog) =
-        (retold::account(suite, id)?, suite.store().read_json(&names::design_log(id))?);
+    let account: Account = suite.store().read_json(&names::account(id))?;
+    let log: DesignLog = suite.store().read_json(&names::design_log(id))?;
     let draft = log.attempts.into_iter().next().map(|first| first.draft).ok_or_else(|| suite.stale(Stage::Design))?;
     let (given, _) = rehearse(&account, draft, &[]).map_err(|why| PipelineError::scenario(id, why.join("; ")))?;
     let brief = cases.brief(suite, cluster, &records, Some(&account));
