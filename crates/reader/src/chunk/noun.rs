@@ -481,6 +481,10 @@ impl Chunker<'_> {
             return None;
         }
         let part = self.part(at).map_or(0, |(_, length)| length);
+        // "the side of its cargo body": of the truck.
+        if found.meaning == Meaning::Kind(Kind::Cargo) && part > found.length {
+            return None;
+        }
         // "passenger side", "driver door" are parts.
         if matches!(found.meaning, Meaning::Occupant(_))
             && (part > found.length || (part > 0 && self.part(at + part).is_some()))
@@ -675,7 +679,7 @@ impl Chunker<'_> {
                     (noun.occupant, noun.owner) = (None, None);
                 }
                 noun.kind = Some(kind);
-                draft.plural = matches!(last, "people" | "personnel" | "traffic")
+                draft.plural = matches!(last, "people" | "personnel" | "traffic" | "children" | "men" | "women")
                     || last.ends_with('s')
                         && !matches!(last, "bus" | "debris" | "cross")
                         && !self.lexicon.is_model(last);

@@ -87,7 +87,9 @@ fn is_of_headline(reading: &Reading<'_>, actor: Actor, (first, end): (usize, usi
     let word = |at: Option<usize>| at.and_then(|at| story.tokens.get(at)).map_or("", |token| token.text.as_str());
     let back = |by: usize| word(first.checked_sub(by));
     let crash = matches!(back(2), "collision" | "crash" | "incident" | "accident");
-    let another = (first..end).any(|at| matches!(word(Some(at)), "another" | "second" | "third"));
+    // "A collision with a third-party vehicle" is no third one.
+    let third = |at: usize| word(Some(at)) == "third" && word(Some(at + 1)) != "party";
+    let another = (first..end).any(|at| matches!(word(Some(at)), "another" | "second") || third(at));
     let partner = reading.contacts.partner.map(|partner| &story.world.actors[partner]);
     let vehicle =
         |kind: Option<Kind>| kind.is_some_and(|kind| kind.is_vehicle() || kind.group() == KindGroup::Motorcycle);

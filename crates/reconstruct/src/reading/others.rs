@@ -1,6 +1,8 @@
 //! Others than the two: who is told of besides them, and why the ego stood.
 
-use crate::reading::story::{Story, has_siren, is_at_junction, is_parked, lets_in_at_green, stays_close};
+use crate::reading::story::{
+    Story, has_siren, is_at_junction, is_parked, lets_in_at_green, parks_backwards, stays_close,
+};
 use crate::reading::words::{before_contact, span, text};
 use crate::told::crash::Told;
 use crate::told::near::Near;
@@ -220,7 +222,8 @@ fn number_of(other: &Other) -> usize {
 /// Whether somebody is on its way into a space at the kerb: "a parallel parking van".
 fn is_parking(other: &Other) -> bool {
     let acts = before_contact(other).map(|fact| text(&fact.source));
-    acts.chain([text(&other.kind.source)]).any(|words| words.contains("parallel parking") || words.ends_with("parking"))
+    let parks = |words: String| words.contains("parallel parking") || words.ends_with("parking");
+    parks_backwards(other) || acts.chain([text(&other.kind.source)]).any(parks)
 }
 
 /// Whether somebody with a siren is told of without a place or a deed: it is nobody who stands ahead.

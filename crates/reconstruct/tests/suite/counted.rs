@@ -29,3 +29,22 @@ fn three_cars_are_three_and_one_is_one() {
     assert_eq!(drawn("three other cars", "lead"), 3);
     assert_eq!(drawn("several cars", "lead"), 3);
 }
+
+/// Who backs into a space ahead, for whom the ego stops, and who is told only to stand there.
+fn parks(does: &str) -> (f64, String) {
+    let text = format!(
+        "The AV was traveling eastbound on Elm Street and came to a stop behind a van that was {does}. A car approached from behind and the \
+         front of the car made contact with the rear of the stationary AV."
+    );
+    let shown = made(&told(&text));
+    let (lead, ego) = (crate::others::track(&shown, "lead"), shown.rollout.ego_track());
+    let last = crate::ways::before_contact(&shown);
+    (ego.states[last].y - lead.states[last].y, lead.kind.label().to_owned())
+}
+
+#[test]
+fn a_van_that_backs_into_a_space_stands_there_beside_the_lane() {
+    let ((aside_m, kind), (in_lane_m, _)) = (parks("backing into a parking space"), parks("stopped in the lane"));
+    assert_eq!(kind, "van");
+    assert!(aside_m > 1.0 && in_lane_m.abs() < 0.5, "{aside_m}, {in_lane_m}");
+}
