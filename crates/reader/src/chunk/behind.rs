@@ -2,7 +2,7 @@
 
 use super::noun::can_own;
 use super::{Article, Chunker, Noun};
-use crate::lexicon::{Meaning, Occupant};
+use crate::lexicon::{Adjective, Meaning, Occupant};
 use crate::token::TokenKind;
 use recrash_model::account::{Kind, KindGroup};
 
@@ -13,6 +13,7 @@ impl Chunker<'_> {
     /// A noun with what stands behind it from `at` on and belongs to it; "'s rear bumper" is left to others.
     pub(super) fn finish(&self, mut noun: Noun, first: usize, at: usize) -> Option<(Noun, usize)> {
         let at = self.alias_behind(&mut noun, at);
+        noun.subject |= self.is_own_by_what_follows(&noun, at);
         self.kind_in_brackets(&mut noun, at);
         if let Some((truck, behind)) = self.drawn_by(&noun, at) {
             return Some((truck, behind - first));
@@ -36,14 +37,23 @@ impl Chunker<'_> {
         if self.text(at) != "'s" {
             return Some((noun, at - first));
         }
-        // "the truck's flatbed trailer" is the truck.
+        // "the truck's flatbed trailer", "the AV's trailer" is the truck, or the AV.
         if let Some(behind) = self.trailer(at + 1)
-            && noun.kind.is_some_and(Kind::is_vehicle)
+            && (noun.kind.is_some_and(Kind::is_vehicle) || noun.subject && self.text(behind - 1) == "trailer")
         {
-            if noun.kind.is_some_and(|kind| kind.group() == KindGroup::Truck) {
-                noun.kind = Some(Kind::SemiTrailerTruck);
-            }
+            noun.kind = match noun.kind {
+                // "the tow truck's load" makes no other truck of it.
+                Some(kind) if kind.group() == KindGroup::Truck && kind != Kind::TowTruck => {
+                    Some(Kind::SemiTrailerTruck)
+                }
+                None if noun.subject => Some(Kind::SemiTrailerTruck),
+                Some(Kind::Pickup) if self.text(behind - 1) == "trailer" => Some(Kind::PickupWithTrailer),
+                kind => kind,
+            };
             return Some((noun, behind - first));
+        }
+        if let Some((vehicle, behind)) = self.owned_vehicle(&noun, at + 1) {
+            return Some((vehicle, behind - first));
         }
         // "the van's driver": the owner of somebody inside.
         if let Some((mut person, length)) = self.owned_person(at + 1) {
@@ -51,6 +61,28 @@ impl Chunker<'_> {
             return Some((person, at + 1 + length - first));
         }
         Some((noun, at - first))
+    }
+
+    /// "a shuttle operated by Acme", "a test truck of our program", "a van in automated operation": the subject vehicle, by what stands behind it.
+    fn is_own_by_what_follows(&self, noun: &Noun, at: usize) -> bool {
+        let another = |adjective: &Adjective| matches!(adjective, Adjective::Another | Adjective::Other);
+        let one = noun.article != Article::Definite && !noun.several && !noun.adjectives.iter().any(another);
+        let vehicle = noun.kind.is_some_and(Kind::is_vehicle) && noun.occupant.is_none();
+        let own = match (self.text(at), self.text(at + 1)) {
+            ("operated", "by") => self.company(at + 2) || self.text(at + 2) == "us",
+            ("of", "our") => true,
+            ("in", "automated" | "autonomous" | "driverless") => matches!(self.text(at + 2), "operation" | "mode"),
+            _ => false,
+        };
+        one && vehicle && own
+    }
+
+    /// "a contractor's truck": the truck.
+    fn owned_vehicle(&self, noun: &Noun, at: usize) -> Option<(Noun, usize)> {
+        let person = noun.kind == Some(Kind::Pedestrian) && noun.occupant.is_none();
+        let (vehicle, length) = self.noun(at).filter(|(_, _)| person)?;
+        let owned = vehicle.kind.is_some_and(Kind::is_vehicle) && vehicle.occupant.is_none() && !vehicle.subject;
+        (owned && vehicle.article == Article::None).then_some((Noun { article: noun.article, ..vehicle }, at + length))
     }
 
     /// "the trailer of a truck": the truck.
@@ -116,6 +148,7 @@ impl Chunker<'_> {
                 | "boarding"
         ) && let Some((owner, length)) = self.noun(behind + 1)
             && (owner.subject || owner.kind.is_some_and(can_own))
+            && owner.kind != Some(Kind::Wheelchair)
             && owner.occupant.is_none()
         {
             // "the driver of a northbound van".
@@ -155,6 +188,10 @@ impl Chunker<'_> {
         );
         if !wheels || ridden.occupant.is_some() {
             return at;
+        }
+        // "a passenger in a wheelchair was being secured": somebody in the vehicle.
+        if noun.occupant.is_some() && ridden.kind == Some(Kind::Wheelchair) {
+            return ride + length;
         }
         (noun.kind, noun.occupant, noun.owner) = (ridden.kind, None, None);
         ride + length

@@ -1,6 +1,7 @@
 //! Tokens of one sentence into chunks: who is named, verbs, where, lanes, and the small words between them.
 
 mod behind;
+mod group;
 mod noun;
 mod piece;
 mod places;
@@ -47,6 +48,8 @@ pub struct Noun {
     pub one_of: bool,
     /// It is called a tractor, the front half of a truck.
     pub tractor: bool,
+    /// It is called a shuttle.
+    pub shuttle: bool,
     /// It is called the second, or so.
     pub ordinal: Option<u8>,
     /// It is called a passenger vehicle, and is no bus.
@@ -74,6 +77,7 @@ impl Noun {
             compass: None,
             one_of: false,
             tractor: false,
+            shuttle: false,
             ordinal: None,
             passenger: false,
             namesake: false,

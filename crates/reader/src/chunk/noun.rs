@@ -9,7 +9,7 @@ use recrash_model::account::{Kind, KindGroup};
 const TRAILER_NAME: usize = 3;
 
 /// Most tokens before the head of a noun.
-const LONGEST_LEAD: usize = 10;
+pub(super) const LONGEST_LEAD: usize = 10;
 
 /// A noun that is being read.
 struct Draft {
@@ -42,7 +42,7 @@ enum Lead {
 }
 
 /// "a stopped van", "a parked van".
-fn stands(adjective: &Adjective) -> bool {
+pub(super) fn stands(adjective: &Adjective) -> bool {
     matches!(adjective, Adjective::Stopped | Adjective::Parked)
 }
 
@@ -66,6 +66,9 @@ impl Chunker<'_> {
             let noun = Noun { article, kind: Some(Kind::LooseWheel), several: !one_of, one_of, ..Noun::unnamed() };
             return Some((noun, behind - first));
         }
+        if let Some(group) = self.crowd_again(first) {
+            return Some((group, 2));
+        }
         // "another of our test cars".
         if self.text(first) == "another"
             && self.text(first + 1) == "of"
@@ -82,7 +85,9 @@ impl Chunker<'_> {
         }
         let mut draft = self.article(first);
         // "one of them": of those named before.
-        if draft.one_of && self.text(draft.at) == "them" {
+        let those = matches!(self.text(draft.at - 1), "these" | "those");
+        if draft.one_of && (self.text(draft.at) == "them" || those && self.text(draft.at) == ",") {
+            draft.at -= usize::from(those);
             let noun = Noun { one_of: true, kind: Some(Kind::Vehicle), ..draft.noun };
             return Some((noun, draft.at + 1 - first));
         }
@@ -114,32 +119,6 @@ impl Chunker<'_> {
             noun.article = if noun.one_of { Article::Indefinite } else { Article::Definite };
         }
         Some((noun, length))
-    }
-
-    /// "the van and motorcycle", "a stopped van and bus": the noun before, whose article is that of the second too, and that it stands.
-    fn shares_with(&self, first: usize, kind: Kind) -> Option<Noun> {
-        let and = first.checked_sub(1).filter(|and| *and > self.first && self.text(*and) == "and")?;
-        let mut lead = (self.first.max(and.saturating_sub(LONGEST_LEAD))..and).rev();
-        let begins = lead.find(|at| matches!(self.text(*at), "the" | "a" | "an"))?;
-        let (before, length) = self.noun(begins)?;
-        let stand =
-            kind.is_vehicle() && before.kind.is_some_and(Kind::is_vehicle) && before.adjectives.iter().any(stands);
-        let shares = before.article == Article::Definite || stand;
-        (shares && begins + length == and && !before.several).then_some(before)
-    }
-
-    /// "a group of", "the pair of".
-    fn is_group(&self, at: usize) -> bool {
-        let many = matches!(self.text(at + 1), "group" | "pair" | "couple" | "pack" | "party" | "trio")
-            || self.text(at) == "a" && self.text(at + 1) == "number";
-        matches!(self.text(at), "a" | "the") && many && self.text(at + 2) == "of"
-    }
-
-    fn another_of(&self, at: usize) -> Option<(Noun, usize)> {
-        let (inner, length) = self.noun(at)?;
-        let kind = inner.kind.filter(|_| !inner.subject).unwrap_or(Kind::Vehicle);
-        let (article, adjectives) = (Article::Indefinite, vec![Adjective::Another]);
-        Some((Noun { article, kind: Some(kind), adjectives, ..Noun::unnamed() }, length))
     }
 
     /// A draft with its article.
@@ -175,7 +154,9 @@ impl Chunker<'_> {
         if length == 3 && !group && self.text(first) == "the" {
             noun.adjectives.push(Adjective::Another);
         }
-        let (at, one_of) = (first + length, length > 1 && !group);
+        // "a crowd of about fifteen dirt bikes".
+        let about = group && matches!(self.text(first + length), "about" | "around" | "some" | "roughly" | "nearly");
+        let (at, one_of) = (first + length + usize::from(about), length > 1 && !group);
         Draft { noun, first, at, one_of, subject: false, make: false, plural: false, strange: 0 }
     }
 
@@ -309,7 +290,7 @@ impl Chunker<'_> {
         self.lexicon.longest(self.tokens, at, |meaning| matches!(meaning, Meaning::Adjective(_))).is_some()
     }
 
-    fn company(&self, at: usize) -> bool {
+    pub(super) fn company(&self, at: usize) -> bool {
         self.lexicon.longest(self.tokens, at, |meaning| matches!(meaning, Meaning::Company)).is_some()
     }
 
@@ -500,21 +481,28 @@ impl Chunker<'_> {
             return None;
         }
         let part = self.part(at).map_or(0, |(_, length)| length);
+        // "the side of its cargo body": of the truck.
+        if found.meaning == Meaning::Kind(Kind::Cargo) && part > found.length {
+            return None;
+        }
         // "passenger side", "driver door" are parts.
         if matches!(found.meaning, Meaning::Occupant(_))
             && (part > found.length || (part > 0 && self.part(at + part).is_some()))
         {
             return None;
         }
-        if matches!(self.text(at + found.length), "rack" | "racks" | "lane" | "lanes" | "path" | "share" | "yard")
-            && !matches!(found.meaning, Meaning::Subject)
-        {
+        // "the bike-shared lane", "a wheelchair ramp": parts and places.
+        let of_place = matches!(
+            self.text(at + found.length),
+            "rack" | "racks" | "lane" | "lanes" | "path" | "share" | "shared" | "yard" | "ramp" | "ramps"
+        );
+        if of_place && !matches!(found.meaning, Meaning::Subject) {
             return None;
         }
         // "the tram line", "train tracks", "a bus stop": places.
         let served = matches!(
             self.text(at + found.length - 1),
-            "tram" | "train" | "bus" | "rail" | "streetcar" | "trolley" | "railroad" | "railway"
+            "tram" | "train" | "bus" | "rail" | "streetcar" | "trolley" | "railroad" | "railway" | "shuttle"
         );
         let place = matches!(
             self.text(at + found.length),
@@ -635,9 +623,13 @@ impl Chunker<'_> {
         let kind = match draft.noun.kind {
             Some(kind) if kind.group() == KindGroup::Truck => Kind::SemiTrailerTruck,
             Some(Kind::Pickup) => Kind::PickupWithTrailer,
+            None if draft.subject => Kind::SemiTrailerTruck,
             _ => return draft.at,
         };
-        let own = |at: usize| self.text(at) == "trailer";
+        let own = |at: usize| {
+            let named = |meaning| matches!(meaning, Meaning::Kind(Kind::Trailer));
+            self.lexicon.longest(self.tokens, at, named).map(|found| (at, at + found.length))
+        };
         let tells = |at: usize| {
             let word = self.text(at);
             let another = matches!(word, "another" | "second" | "third" | "different" | "other" | "parked" | "stopped");
@@ -650,17 +642,17 @@ impl Chunker<'_> {
             _ => return draft.at,
         };
         let from = draft.at + joined;
-        let trailer = (from..=from + TRAILER_NAME).find(|at| own(*at));
-        let named = trailer.filter(|trailer| (from..*trailer).all(tells));
+        let trailer = (from..=from + TRAILER_NAME).find_map(own);
+        let named = trailer.filter(|(trailer, _)| (from..*trailer).all(tells)).map(|(_, behind)| behind);
         match named.filter(|_| !draft.plural && draft.noun.occupant.is_none()) {
-            Some(trailer) => {
+            Some(behind) => {
                 draft.noun.kind = Some(kind);
-                let towed = match (self.text(trailer + 1), self.text(trailer + 2)) {
+                let towed = match (self.text(behind), self.text(behind + 1)) {
                     ("in", "tow") => 2,
                     ("attached" | "hitched", next) if next != "to" => 1,
                     _ => 0,
                 };
-                trailer + 1 + towed
+                behind + towed
             }
             None => draft.at,
         }
@@ -680,13 +672,14 @@ impl Chunker<'_> {
                     noun.names.push(word.to_owned());
                 }
                 noun.tractor = length == 1 && word == "tractor";
+                noun.shuttle = last == "shuttle";
                 noun.passenger = kind == Kind::Vehicle && word == "passenger";
                 // "a passenger sedan" carries passengers, and is none.
                 if kind.is_vehicle() && matches!(noun.occupant, Some((Occupant::Rider, _))) {
                     (noun.occupant, noun.owner) = (None, None);
                 }
                 noun.kind = Some(kind);
-                draft.plural = matches!(last, "people" | "personnel" | "traffic")
+                draft.plural = matches!(last, "people" | "personnel" | "traffic" | "children" | "men" | "women")
                     || last.ends_with('s')
                         && !matches!(last, "bus" | "debris" | "cross")
                         && !self.lexicon.is_model(last);

@@ -1,8 +1,8 @@
 //! Directions, lanes and places beside the road.
 
-use super::{Chunker, DETERMINERS, Spot};
+use super::{Chunker, DETERMINERS, Noun, Spot};
 use crate::token::{Token, TokenKind, number};
-use recrash_model::account::{Compass, LaneWord};
+use recrash_model::account::{Compass, Kind, KindGroup, LaneWord};
 
 /// Most tokens of the name of a lane before "lane".
 const LONGEST_LANE_NAME: usize = 9;
@@ -183,7 +183,7 @@ impl Chunker<'_> {
     pub(super) fn lane(&self, at: usize) -> Option<(LaneWord, usize)> {
         let word = self.text(at);
         if word == "shoulder" {
-            return Some((LaneWord::Shoulder, 1));
+            return (!self.is_of_a_body(at)).then_some((LaneWord::Shoulder, 1));
         }
         if let Some((lane, length)) = self.counted_lane(at).or_else(|| self.counted_turn_lane(at)) {
             // "the second lane from the left among the lanes for left turns".
@@ -221,6 +221,8 @@ impl Chunker<'_> {
             return None;
         }
         let named = LANES.iter().find(|(names, _)| names.iter().all(|words| has(words))).map(|(_, lane)| *lane);
+        // "the bike-shared lane" is one for all.
+        let named = named.filter(|lane| *lane != LaneWord::Bike || !has(&["shared"]));
         let other = has(TURN) && has(OF_TWO) && !has(&["left", "right", "leftmost", "rightmost"]);
         let named = if other { self.turn_lanes_before(at).or(named) } else { named };
         if let Some((lane, length)) = self.told_behind_lane(end) {
@@ -233,6 +235,16 @@ impl Chunker<'_> {
             return None;
         }
         Some((named?, end + 1 - at))
+    }
+
+    /// "the shoulder of the pedestrian", "the cyclist's shoulder": no part of the road.
+    fn is_of_a_body(&self, at: usize) -> bool {
+        let somebody = |noun: &Noun| {
+            let rides = |kind: Kind| matches!(kind.group(), KindGroup::OnFoot | KindGroup::Cyclist);
+            noun.occupant.is_some() || noun.kind.is_some_and(rides)
+        };
+        let of = self.text(at + 1) == "of" && self.noun(at + 2).is_some_and(|(noun, _)| somebody(&noun));
+        of || at > self.first && self.text(at - 1) == "'s"
     }
 
     /// "the inner of two left turn lanes, and a van in the outer turn lane": that is for the same turn.

@@ -522,6 +522,7 @@ fn others(reading: &Reading<'_>) -> Vec<Other> {
         let touched_partner = touch.is_some();
         let again = known.sentence.is_some_and(|last| first < story.sentences[last].first);
         let nobody = nobody::is_nobody(reading, (first, end), &acts, again)
+            && !nobody::had_been_there(reading, actor, (first, end))
             || acts.is_empty() && nobody::is_named_before(reading, actor, kind)
             || nobody::is_one_of_the_two(reading, (actor, kind), (first, end), &acts)
             || nobody::is_remark(reading, (first, end), &acts)

@@ -36,7 +36,10 @@ pub(super) fn is_one_of_the_two(
     // "Cut off by an oncoming vehicle, a pickup truck".
     let partner_begins = partner.and_then(|partner| story.world.actors[partner].kind_tokens).map(|(begins, _)| begins);
     let apposed = kind == Kind::Vehicle && word(Some(end)) == "," && partner_begins == Some(end + 1);
-    let the_other = idle && partner.is_some() && word(Some(first)) == "the" && word(Some(first + 1)) == "other";
+    // "Reported since one of the other vehicles was towed".
+    let of_those = inside(&["other"]) && inside(&["one"]) && inside(&["vehicles", "cars"]);
+    let the_other =
+        idle && of_those || idle && partner.is_some() && word(Some(first)) == "the" && word(Some(first + 1)) == "other";
     own && !another
         || is_ridden_by_partner(reading, kind, first) && idle
         || is
@@ -84,7 +87,9 @@ fn is_of_headline(reading: &Reading<'_>, actor: Actor, (first, end): (usize, usi
     let word = |at: Option<usize>| at.and_then(|at| story.tokens.get(at)).map_or("", |token| token.text.as_str());
     let back = |by: usize| word(first.checked_sub(by));
     let crash = matches!(back(2), "collision" | "crash" | "incident" | "accident");
-    let another = (first..end).any(|at| matches!(word(Some(at)), "another" | "second" | "third"));
+    // "A collision with a third-party vehicle" is no third one.
+    let third = |at: usize| word(Some(at)) == "third" && word(Some(at + 1)) != "party";
+    let another = (first..end).any(|at| matches!(word(Some(at)), "another" | "second") || third(at));
     let partner = reading.contacts.partner.map(|partner| &story.world.actors[partner]);
     let vehicle =
         |kind: Option<Kind>| kind.is_some_and(|kind| kind.is_vehicle() || kind.group() == KindGroup::Motorcycle);
@@ -132,10 +137,42 @@ fn is_towed_with(reading: &Reading<'_>, (actor, kind): (Actor, Kind), (first, en
     if draws && kind != Kind::Trailer {
         return known.towed_by == Some(actor) || words(first, end + 6).contains(&"trailer");
     }
+    // "A tow truck had stopped to load a disabled vehicle": that goes with it.
+    let loads = words(first.saturating_sub(2), first).iter().any(|word| LOADS.contains(word));
+    if known.kind == Some(Kind::TowTruck) && kind.is_vehicle() && loads {
+        return true;
+    }
     let drawn = kind == Kind::Trailer
         && known.kind.is_some_and(|kind| matches!(kind.group(), KindGroup::Truck | KindGroup::Car));
     let with = words(first.saturating_sub(3), end);
     drawn && ["with", "and", "pulling", "towing", "hauling", "its"].iter().any(|word| with.contains(word))
+}
+
+/// What a tow truck does with whom it is to tow.
+const LOADS: [&str; 8] = ["load", "loading", "lift", "lifting", "lifted", "winch", "winching", "hoisting"];
+
+/// "Another car that was waiting behind it drove around it", "a car behind it stopped in time", "before that, it had been following a bus", told
+/// behind the crash: who had been there before. The tokens of its noun.
+pub(super) fn had_been_there(reading: &Reading<'_>, actor: Actor, (first, end): (usize, usize)) -> bool {
+    let (story, known) = (&reading.story, &reading.story.world.actors[actor]);
+    let word = |at: usize| story.tokens.get(at).map_or("", |token| token.text.as_str());
+    let at = end + usize::from(matches!(word(end), "that" | "which" | "who" | ","));
+    let at = match (word(at), word(at + 1)) {
+        ("had", "been") => at + 2,
+        ("was" | "were", _) if at > end => at + 1,
+        _ => at,
+    };
+    let stays =
+        matches!(word(at), "waiting" | "following" | "standing" | "traveling" | "queued" | "driving" | "riding");
+    let beside = |at: usize| matches!(word(at), "behind" | "ahead" | "beside" | "alongside" | "next" | "in");
+    let there = stays && beside(at + 1) || word(at) == "following" || word(end) == "behind";
+    // Told of the subject vehicle as what it had done before.
+    let back = |(number, frame): (usize, &Frame)| {
+        let before = frame.who == Some(SUBJECT) && frame.act().is_some() && frame.first < first && end <= frame.end + 2;
+        before && !reading.is_after(number) && known.sentence == Some(frame.sentence)
+    };
+    let told_back = story.frames.iter().enumerate().any(back);
+    known.mentions == 1 && (there || told_back) && whereabouts::place_of(reading, actor).is_some()
 }
 
 /// A thing that is called as the partner is, or a part of a vehicle.
@@ -173,7 +210,8 @@ pub(super) fn is_remark(reading: &Reading<'_>, (first, end): (usize, usize), act
     let called = matches!(back(1), "called" | "summoned" | "requested" | "call" | "contacted");
     let required = matches!(back(1), "require" | "requires" | "requiring");
     let taken_for = back(1) == "as"
-        && (2..9).any(|by| ["misclassif", "misidentif", "mistook"].iter().any(|stem| back(by).starts_with(stem)));
+        && (2..9)
+            .any(|by| ["misclassif", "misidentif", "mistook", "listed"].iter().any(|stem| back(by).starts_with(stem)));
     // "Looking for cross traffic", "a truck-mounted sign".
     let looked_for = back(1) == "for" && matches!(back(2), "looking" | "checking" | "watching");
     // "There is no stop sign at the junction for vehicles on that street".

@@ -125,7 +125,8 @@ impl Case<'_> {
     fn thrown(&self) -> Said {
         let contacts = &self.reading.contacts;
         let touched = || self.account.others.iter().any(|other| other.touched_partner);
-        let thrown = self.partner.did(Act::Pushed) && !self.partner.did(Act::Reverse)
+        let backs = self.partner.did(Act::Reverse) || self.cp == Some(ContactState::Reversing);
+        let thrown = self.partner.did(Act::Pushed) && !backs
             || !contacts.earlier.is_empty() && touched()
             || separate(self.reading)
             || of_a_crash(self.reading);

@@ -74,7 +74,10 @@ fn told_afterwards(clues: &Clues<'_>) -> Option<Fact<Origin>> {
                 && frame.sentence == *sentence
                 && frame.relations.iter().any(|(other, _)| other == relation)
         };
-        let drives = |frame: &Frame| frame.form == Form::Ing && frame.act() == Some(Act::Follow) && frame.happened();
+        // "A van that was waiting behind it drove around it."
+        let waited = |frame: &Frame| frame.act() == Some(Act::Hold) && (frame.form == Form::Ing || frame.described);
+        let went = |frame: &Frame| frame.act() == Some(Act::Follow) && frame.form == Form::Ing;
+        let drives = |frame: &Frame| (went(frame) || waited(frame)) && frame.happened();
         // "A bus then stopped behind it": it came up from there.
         let comes_up =
             |frame: &Frame| *relation == Relation::Behind && frame.act() == Some(Act::Stop) && frame.happened();

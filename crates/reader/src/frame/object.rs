@@ -23,7 +23,7 @@ impl Parser<'_> {
         }
         let Some(frame) = carry.frame else { return };
         match preposition {
-            "by" if self.frames[frame].sense == Sense::Tow => self.towed_by(frame, mention.actor),
+            "by" if self.frames[frame].sense == Sense::Tow => self.towed_by(frame, mention.actor, carry),
             "by" => self.done_by(frame, mention, placed, carry),
             "in" if mention.piece.is_some() && self.frames[frame].is_contact() => {
                 self.met(frame, preposition, mention, placed, carry);
@@ -97,8 +97,11 @@ impl Parser<'_> {
     }
 
     /// "was towed by a truck".
-    fn towed_by(&mut self, frame: usize, actor: Actor) {
+    fn towed_by(&mut self, frame: usize, actor: Actor, carry: &mut Carry) {
         let Some(towed) = self.frames[frame].who else { return };
+        // "A trailer pulled by a pickup went by": the two of them.
+        let told = [&mut carry.subject, &mut carry.main].into_iter().flatten();
+        told.filter(|mention| mention.actor == towed).for_each(|mention| mention.actor = actor);
         self.world.tow(actor, towed);
         self.world.actors[actor].announced |= self.world.actors[towed].announced;
         (self.frames[frame].object, self.frames[frame].who) = (Some(towed), Some(actor));

@@ -5,7 +5,7 @@ use crate::chunk::{Article, Chunk, Joint, Noun, Placed};
 use crate::lexicon::{Form, Relation, Sense};
 use crate::token::TokenKind;
 use crate::world::{Actor, SUBJECT, same_kind};
-use recrash_model::account::{Act, Kind};
+use recrash_model::account::{Act, Kind, KindGroup};
 
 /// A verb where it stands.
 #[derive(Clone, Copy)]
@@ -287,7 +287,9 @@ impl Parser<'_> {
         let generic = |actor: Actor| {
             let known = self.world.actors[actor].kind.filter(|_| actor != SUBJECT && !self.world.actors[actor].several);
             known.is_some_and(|known| {
-                matches!(known, Kind::Vehicle | Kind::Object | Kind::Animal) && same_kind(known, kind)
+                // "Vehicle 2, a motorcycle, in front of it".
+                let rides = known == Kind::Vehicle && kind.group() == KindGroup::Motorcycle;
+                rides || matches!(known, Kind::Vehicle | Kind::Object | Kind::Animal) && same_kind(known, kind)
             })
         };
         if !matches!(all[comma].chunk, Chunk::Comma) || !between {

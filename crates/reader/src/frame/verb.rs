@@ -167,9 +167,9 @@ impl Parser<'_> {
     fn comes_loose(&mut self, verb: &Spoken<'_>, carry: &mut Carry) {
         let named = verb.at.checked_sub(1).map(|at| &verb.all[at].chunk);
         let trailer = matches!(named, Some(Chunk::Noun(noun)) if noun.kind == Some(Kind::Trailer));
-        let Some(subject) = carry.subject.as_mut().filter(|_| trailer && verb.sense == Sense::Act(Act::Fall)) else {
-            return;
-        };
+        // Told behind the crash it drew the trailer there.
+        let loose = trailer && verb.sense == Sense::Act(Act::Fall) && !self.frames.iter().any(Frame::is_contact);
+        let Some(subject) = carry.subject.as_mut().filter(|_| loose) else { return };
         if let Some(loose) = self.world.let_go(subject.actor) {
             subject.actor = loose;
         }

@@ -3,10 +3,14 @@
 use super::parser::{Carry, Mention, Parser};
 use crate::chunk::{Chunk, Placed, is_determiner};
 use crate::lexicon::{Form, Sense};
+use recrash_model::account::Kind;
 
 /// Participles of a thing that a vehicle carries or draws.
 const ATTACHED: [&str; 8] =
     ["attached", "hitched", "hooked", "coupled", "connected", "strapped", "secured", "fastened"];
+
+/// Words that nobody knows between "pulling" and the trailer. [chunks]
+const TRAILER_WITHIN: usize = 4;
 
 impl Parser<'_> {
     /// Whether something is told to be "attached to" who is named next.
@@ -14,6 +18,21 @@ impl Parser<'_> {
         let word = |at: usize| self.tokens.get(at).map_or("", |token| token.text.as_str());
         let end = all[at].end;
         ATTACHED.contains(&word(all[at].first)) && end == all[at].first + 1 && word(end) == "to"
+    }
+
+    /// "a pickup pulling a wide horse trailer", "a horse trailer pulled by a pickup": it is drawn there.
+    fn draws_a_trailer(&self, all: &[Placed], at: usize, carry: &Carry) -> bool {
+        let word = self.tokens[all[at].first].text.as_str();
+        let mut behind = all[at + 1..].iter().take(TRAILER_WITHIN).map(|placed| &placed.chunk);
+        let by = matches!(behind.clone().next(), Some(Chunk::Preposition("by")));
+        let next = behind.find(|chunk| !matches!(chunk, Chunk::Word));
+        let draws = matches!(next, Some(Chunk::Noun(noun)) if noun.kind == Some(Kind::Trailer));
+        let last = carry.last.as_ref().and_then(|last| self.world.actors[last.actor].kind);
+        match word {
+            "pulling" | "pulls" | "drawing" | "dragging" | "drew" => draws,
+            "pulled" | "drawn" => draws || by && last == Some(Kind::Trailer),
+            _ => false,
+        }
     }
 
     /// Whether a comma before it still stands before what follows.
@@ -30,13 +49,18 @@ impl Parser<'_> {
             self.verb(Sense::Other, Form::Past, all, at, carry);
             return false;
         }
+        if self.draws_a_trailer(all, at, carry) {
+            let form = if word.ends_with("ing") { Form::Ing } else { Form::Past };
+            self.verb(Sense::Tow, form, all, at, carry);
+            return false;
+        }
         let next = all.get(at + 1).map(|placed| &placed.chunk);
         // "a dolly attached to the back of the truck": they are one.
         if self.is_attached(all, at) {
             carry.attached = carry.last.as_ref().filter(|last| last.piece.is_none()).map(|last| last.actor);
         }
         // "time to turn" is no turn; "at which time it turned" is one.
-        let waits_for = !matches!(word, "time" | "space" | "room" | "set" | "order" | "ready" | "route")
+        let waits_for = !matches!(word, "about" | "time" | "space" | "room" | "set" | "order" | "ready" | "route")
             || matches!(next, Some(Chunk::Preposition("to" | "for")));
         // "nudged over in order to get by": a purpose like any other.
         let in_order = word == "order" && placed.first > 0 && self.tokens[placed.first - 1].text == "in";

@@ -29,9 +29,11 @@ enum Meant {
 type Rule = fn(&mut World, &Sought<'_>) -> Option<Meant>;
 
 /// Who is meant by a noun with a kind: the first rule that says something counts.
-const RULES: [Rule; 15] = [
+const RULES: [Rule; 17] = [
     World::told_of_first,
     World::own_bus,
+    World::own_shuttle,
+    World::own_trailer,
     World::behind_own_name,
     World::own_truck,
     World::own_tractor,
@@ -121,7 +123,9 @@ impl World {
 
     /// "The shuttle was in its lane": the first whom a story names as known is whom it is told of.
     fn told_of_first(&mut self, sought: &Sought<'_>) -> Option<Meant> {
-        let known = sought.is_definite() && sought.noun.adjectives.is_empty() && !sought.noun.several;
+        // "Shuttle 4 was halted behind cars".
+        let bare = sought.noun.article == Article::None && self.begins && self.actors.len() == 1;
+        let known = (sought.is_definite() || bare) && sought.noun.adjectives.is_empty() && !sought.noun.several;
         let things = self.actors[1..].iter().all(|known| !known.acts());
         let unnamed = things && self.actors[SUBJECT].mentions == 0;
         if !(unnamed && known && sought.hint.is_none() && sought.kind.group() == KindGroup::Truck) {
@@ -136,6 +140,26 @@ impl World {
         let bare = sought.noun.article == Article::None && !sought.noun.several;
         let own = sought.kind == Kind::Bus && self.actors[SUBJECT].kind == Some(Kind::Bus);
         (bare && own).then_some(Meant::Known(SUBJECT))
+    }
+
+    /// "The shuttle", of a vehicle that was called otherwise before, where no other one is a bus.
+    fn own_shuttle(&mut self, sought: &Sought<'_>) -> Option<Meant> {
+        let own = self.actors[SUBJECT].mentions > 0 && self.actors[SUBJECT].kind.is_none_or(|kind| kind == Kind::Bus);
+        let plain = sought.is_definite() && sought.noun.adjectives.is_empty() && !sought.noun.several;
+        let bus = |known: &Known| known.kind.is_some_and(|kind| matches!(kind, Kind::Bus | Kind::SchoolBus));
+        let only = !self.actors[1..].iter().any(bus);
+        (sought.noun.shuttle && own && plain && only && sought.hint.is_none()).then_some(Meant::Known(SUBJECT))
+    }
+
+    /// "The left side of the trailer", where nobody else is known who may draw one.
+    fn own_trailer(&mut self, sought: &Sought<'_>) -> Option<Meant> {
+        let own = self.actors[SUBJECT].kind;
+        let truck = own.is_none_or(is_big_truck) && self.actors[SUBJECT].mentions > 0;
+        let plain = sought.is_definite() && sought.noun.adjectives.is_empty() && !sought.noun.several;
+        let may = |kind: Kind| is_truck(kind) || same_kind(kind, Kind::Trailer) || own.is_none() && kind.is_vehicle();
+        let draws = |known: &Known| known.kind.is_some_and(may);
+        let only = !self.actors[1..].iter().any(draws);
+        (sought.kind == Kind::Trailer && truck && plain && only).then_some(Meant::Known(SUBJECT))
     }
 
     /// "An Acme AV ("AV") Peterbilt semi-truck": what it is, behind its name.
@@ -362,7 +386,7 @@ impl World {
         let known = sought.is_definite() && !sought.has(Adjective::Other);
         let Some(found) = found else {
             // "The vehicle" of a story that knows no other one.
-            let only = kind == Kind::Vehicle || kind == Kind::PassengerCar && self.plain && self.actors.len() == 1;
+            let only = kind == Kind::Vehicle || kind == Kind::PassengerCar && self.is_only_car(noun);
             // "Close to the parked cars": a group is none of the two.
             let group = noun.several && sought.has(Adjective::Parked);
             // "The lead vehicle", "the oncoming vehicle": seen from it, and so another one.
@@ -391,6 +415,13 @@ impl World {
             Some(_) if here => Meant::New,
             Some(_) => Meant::Known(found),
         })
+    }
+
+    /// "The car" where no other one is told of, nor a crash with one.
+    fn is_only_car(&self, noun: &Noun) -> bool {
+        let met = self.with_vehicle || self.actors[1..].iter().any(|known| known.kind.is_none_or(Kind::is_vehicle));
+        let own = !noun.several && self.actors[SUBJECT].mentions > 0;
+        self.plain && self.actors.len() == 1 || !met && own
     }
 
     /// Whose driver, passenger or rider is meant.

@@ -130,6 +130,8 @@ pub struct World {
     pub main: Option<Actor>,
     /// The record says that it crashed with a car.
     with_car: bool,
+    /// It says that it crashed with a vehicle of any kind.
+    with_vehicle: bool,
     /// The noun that is looked up begins its sentence.
     begins: bool,
     /// First token of the sentence that is read.
@@ -158,6 +160,7 @@ impl World {
             before: false,
             main: None,
             with_car: own.partner == Some("car"),
+            with_vehicle: matches!(own.partner, Some("car" | "suv" | "van" | "pickup" | "truck" | "bus")),
             begins: false,
             first: 0,
             sentence: 0,
@@ -169,23 +172,14 @@ impl World {
     pub fn resolve(&mut self, noun: &Noun, tokens: (usize, usize), hint: Option<Relation>) -> Actor {
         // "One of the cyclists" comes from where they all do.
         let group = noun.kind.filter(|_| noun.one_of).and_then(|kind| {
-            let fits = |known: Kind| known == kind || kind == Kind::Vehicle;
+            let fits = |known: Kind| known == kind || kind == Kind::Vehicle || ride(kind, known);
             (1..self.actors.len())
                 .rfind(|&group| self.actors[group].several && self.actors[group].kind.is_some_and(fits))
         });
         self.begins = tokens.0 == self.first;
         let actor = self.find(noun, hint).unwrap_or_else(|| self.add(noun));
         if let Some(group) = group.filter(|group| *group != actor) {
-            let of = self.actors[group].clone();
-            let known = &mut self.actors[actor];
-            known.heading = known.heading.or(of.heading);
-            known.group = Some(group);
-            if known.relations.is_empty() {
-                (known.relations, known.as_group) = (of.relations, true);
-            }
-            if noun.kind == Some(Kind::Vehicle) && known.kind.is_none_or(|kind| kind == Kind::Vehicle) {
-                (known.kind, known.kind_tokens) = (of.kind, of.kind_tokens);
-            }
+            self.join(actor, group, noun);
         }
         let actor = self.actors[actor].towed_by.unwrap_or(actor);
         self.clock += 1;
@@ -210,6 +204,11 @@ impl World {
         } else if noun.subject && noun.kind.is_some_and(|kind| kind.group() == KindGroup::Truck) {
             known.kind = known.kind.or(noun.kind);
         }
+        let drawn = noun.tractor || matches!(noun.kind, Some(Kind::Trailer | Kind::SemiTrailerTruck));
+        if actor == SUBJECT && noun.occupant.is_none() && drawn {
+            self.draws_own_trailer();
+        }
+        let known = &mut self.actors[actor];
         if let Some(relation) = relation_of(noun)
             && noun.occupant.is_none()
             && actor != SUBJECT
@@ -222,6 +221,21 @@ impl World {
             known.heading = Some((compass, tokens.0, tokens.1));
         }
         actor
+    }
+
+    /// One of a group goes where that goes, and is where it is; and is what it is, where its noun says no more.
+    fn join(&mut self, actor: Actor, group: Actor, noun: &Noun) {
+        let of = self.actors[group].clone();
+        let known = &mut self.actors[actor];
+        known.heading = known.heading.or(of.heading);
+        known.group = Some(group);
+        if known.relations.is_empty() {
+            (known.relations, known.as_group) = (of.relations, true);
+        }
+        let generic = noun.kind.is_some_and(|kind| kind == Kind::Vehicle || of.kind.is_some_and(|of| ride(kind, of)));
+        if generic && known.kind.is_none_or(|kind| matches!(kind, Kind::Vehicle | Kind::Pedestrian)) {
+            (known.kind, known.kind_tokens) = (of.kind, of.kind_tokens);
+        }
     }
 
     /// What a noun besides its own says of somebody: "Vehicle 2, a black van".
@@ -267,7 +281,7 @@ impl World {
         let kind = match self.actors[tower].kind {
             Some(Kind::HeavyTruck | Kind::SemiTrailerTruck) => Kind::SemiTrailerTruck,
             Some(kind) if !kind.is_vehicle() => kind,
-            Some(Kind::TowTruck) => Kind::TowTruck,
+            Some(kind) if kind.group() == KindGroup::Truck => kind,
             _ => Kind::PickupWithTrailer,
         };
         // "A pickup pulling a food truck trailer": no pickup pulls a truck.
@@ -276,8 +290,18 @@ impl World {
             Some(Kind::Pickup) => self.actors[towed].kind.is_some_and(|kind| pulled.contains(&kind)),
             _ => self.actors[towed].kind == Some(Kind::Trailer),
         };
-        if tower != SUBJECT && trailer {
+        if tower == SUBJECT && trailer {
+            self.draws_own_trailer();
+        } else if trailer {
             self.actors[tower].kind = Some(kind);
+        }
+    }
+
+    /// "Our trailer", "the AV's trailer": whoever the subject vehicle was called before, it is a truck that draws one.
+    fn draws_own_trailer(&mut self) {
+        let known = &mut self.actors[SUBJECT];
+        if matches!(known.kind, None | Some(Kind::HeavyTruck | Kind::Trailer)) {
+            known.kind = Some(Kind::SemiTrailerTruck);
         }
     }
 
@@ -359,6 +383,12 @@ impl World {
     pub fn by_name(&self, name: &str) -> Option<Actor> {
         (1..self.actors.len()).rfind(|&actor| self.actors[actor].names.iter().any(|known| known == name))
     }
+}
+
+/// "Two children on bicycles ..., one of the children": whether those of the first kind may be those who ride as the second.
+fn ride(said: Kind, known: Kind) -> bool {
+    let rides = matches!(known.group(), KindGroup::Cyclist | KindGroup::OnFoot) && known != Kind::Pedestrian;
+    said == Kind::Pedestrian && rides
 }
 
 /// Takes over what a noun says of somebody: its kind where that says more, names, number.

@@ -152,6 +152,7 @@ pub fn facts(account: &Account) -> BTreeMap<&'static str, String> {
         ("other_places", other_places.join(" ")),
         ("other_acts", other_acts.join(" ")),
         ("hiding", hiding.join(" ")),
+        ("sv_kind", name(&sv.kind)),
         ("sv_lane", name(&sv.lane)),
         ("sv_astride", sv.astride.as_ref().map(over).unwrap_or_default()),
         ("cp_astride", partner.astride.as_ref().map(over).unwrap_or_default()),

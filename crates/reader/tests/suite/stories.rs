@@ -1,7 +1,7 @@
 //! The reader on mini narratives of our own: `stories.toml`, a case a behaviour, `families.toml`, each kind of crash in many
 //! wordings, `wordings.toml`, what was misread in many, `newer.toml`, what was misread in a newer edition, `whose.toml`, acts and
 //! places given to the wrong one, `time.toml`, what is told first and happens later, `grammar.toml`, who does what in retold reports, and
-//! `places.toml`, their words and places, and `astride.toml`, who is partly in one lane and partly elsewhere.
+//! `places.toml`, their words and places, `astride.toml`, who is partly in one lane and partly elsewhere, and `who.toml`, who is told of at all.
 
 use crate::common::{self, account_of, facts};
 use recrash_model::account::{Act, Obeyed, Source};
@@ -35,6 +35,7 @@ fn stories() -> Vec<Story> {
         include_str!("grammar.toml"),
         include_str!("places.toml"),
         include_str!("astride.toml"),
+        include_str!("who.toml"),
     ];
     files.iter().flat_map(|text| toml::from_str::<File>(text).unwrap().story).collect()
 }

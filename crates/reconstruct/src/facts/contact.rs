@@ -4,6 +4,7 @@ use crate::told::crash::Told;
 use crate::told::rig::{ID, Rig};
 use crate::told::zones::{side_of, zones_off};
 use crate::touch::opening;
+use recrash_model::account::Kind;
 use recrash_model::geometry::{OrientedBox, Pose, Vec2};
 use recrash_model::kinds::PartnerKind;
 use recrash_model::math;
@@ -198,6 +199,12 @@ pub(super) fn is_drawn(rollout: &Rollout) -> bool {
 /// From the front of a rigid one to its trailer. [m]
 fn tractor_m(told: &Told) -> f64 {
     told.trailer_of.and_then(Rig::of).map_or(0.0, |rig| rig.tractor.length_m)
+}
+
+/// Whether the place of a contact is on the trailer of an ego that draws one, which is a truck.
+pub(super) fn is_on_own_trailer(outline: &OrientedBox, point: Vec2) -> bool {
+    let tractor_m = Rig::of(Kind::SemiTrailerTruck).map_or(0.0, |rig| rig.tractor.length_m);
+    outline.to_local(point).x < outline.half_length - tractor_m
 }
 
 /// Whether the place of a contact is on the trailer, of a rigid one.

@@ -138,10 +138,17 @@ impl<'a> Crash<'a> {
     fn sv_zones(&self) -> Option<Check> {
         let zones = &self.told.sv.zones;
         let near = is_near(zones, self.geometry.ego_zone, &self.ego_box, self.geometry.point);
+        let on_trailer = !self.told.sv_trailer || contact::is_on_own_trailer(&self.ego_box, self.geometry.point);
         let over = !near && things::rear_goes_over(self.told, self.ego_track, &self.touch.other_box, self.step());
-        let observed =
-            self.geometry.ego_zone.label().to_owned() + if over { ", and the rear goes over it" } else { "" };
-        (!zones.is_empty()).then(|| check(CheckKind::SvZones, near || over, zone_words(zones), observed))
+        let (mut expected, mut observed) = (zone_words(zones), self.geometry.ego_zone.label().to_owned());
+        if over {
+            observed += ", and the rear goes over it";
+        }
+        if self.told.sv_trailer {
+            expected += ", on the trailer";
+            observed += if on_trailer { ", on the trailer" } else { ", ahead of the trailer" };
+        }
+        (!zones.is_empty()).then(|| check(CheckKind::SvZones, (near || over) && on_trailer, expected, observed))
     }
 
     fn cp_zones(&self) -> Option<Check> {

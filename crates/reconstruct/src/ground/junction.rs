@@ -25,12 +25,12 @@ impl Told {
     }
 }
 
-/// From the stop line to the middle of an ego that stands in a queue: the first of it stands at the line; of several there are two. [m]
+/// From the stop line to the middle of an ego that stands in a queue: the first of it stands at the line; of several there are as many as are drawn. [m]
 fn queue_m(told: &Told) -> Option<f64> {
     let lead = told.extras.iter().find(|extra| extra.role == Role::Lead)?;
     let kind = lead.kind.partner_kind().unwrap_or(PartnerKind::PassengerCar);
     let long_m = sizes::size_of(lead.kind).map_or(VehicleSpec::of(kind).length_m, |size| size.length_m);
-    let ahead = if lead.several { 2.0 } else { 1.0 };
+    let ahead = if lead.several { lead.number as f64 } else { 1.0 };
     let aside_m = if told.sv_aside().is_some() { ROOM_M } else { 0.0 };
     let stands_m = 0.5 * size_of(&told.sv).0 + ahead * (LEAD_GAP_M + long_m) + aside_m + FIRST_AT_LINE_M;
     // Who has set off behind it has come nearer to the line.

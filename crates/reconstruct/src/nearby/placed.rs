@@ -39,7 +39,7 @@ pub(crate) fn with_near(
     }
     for extra in told.wanted.iter().filter(|extra| extra.several) {
         let Some(scene) = Scene::of(told, ground, &rollout) else { break };
-        if let Some(with) = scene.with_second(extra, (&draft, &rollout)) {
+        if let Some(with) = scene.with_more(extra, (&draft, &rollout)) {
             (draft, rollout) = with;
         }
     }

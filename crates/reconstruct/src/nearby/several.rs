@@ -1,4 +1,4 @@
-//! The second one of those who are told to be several: as the first, beside it or behind it.
+//! The others of those who are told to be several: as the first, beside it or behind it.
 
 use crate::draft::signals;
 use crate::facts::seen::Seen;
@@ -8,6 +8,7 @@ use crate::nearby::scene::Scene;
 use crate::others::beside::HIDES_M;
 use crate::told::others::{Extra, Role};
 use crate::told::side::size_of;
+use crate::told::sizes::size_of as size_of_kind;
 use recrash_model::account::LeftRight;
 use recrash_model::geometry::Vec2;
 use recrash_model::kinds::PartnerKind;
@@ -25,34 +26,54 @@ const SIDE_BY_SIDE_M: f64 = 1.2;
 const ONE_BEHIND_M: f64 = 1.6;
 
 impl Scene<'_> {
-    /// The same with a second one of them, where it has room and hinders nobody.
-    pub(super) fn with_second(
+    /// The same with as many of them as are told, each where it has room and hinders nobody.
+    pub(super) fn with_more(
         &self,
         extra: &Extra,
         begun: (&ScenarioDraft, &Rollout),
     ) -> Option<(ScenarioDraft, Rollout)> {
+        let mut found: Option<(ScenarioDraft, Rollout)> = None;
+        for _ in 1..extra.number {
+            let from = found.as_ref().map_or(begun, |(draft, rollout)| (draft, rollout));
+            match self.with_another(extra, from) {
+                Some(next) => found = Some(next),
+                None => break,
+            }
+        }
+        found
+    }
+
+    /// The same with another one of them: beside the first, else beside one of those that stand with it.
+    fn with_another(&self, extra: &Extra, begun: (&ScenarioDraft, &Rollout)) -> Option<(ScenarioDraft, Rollout)> {
         let (draft, rollout) = begun;
-        let id = extra.id();
-        let actor = draft.actors.iter().find(|actor| actor.id == id).filter(|_| extra.several)?;
-        let second_id = second_id(extra, draft)?;
+        let ids = ids(extra);
+        let of_them = |id: &&String| draft.actors.iter().find(|actor| actor.id == **id);
+        let drawn: Vec<&Actor> = ids.iter().filter_map(|id| of_them(&id)).filter(|_| extra.several).collect();
+        let first = *drawn.first().filter(|first| first.id == ids[0])?;
+        let id = ids.iter().find(|id| of_them(id).is_none())?;
+        let kind = extra.more.map(|kind| kind.partner_kind().unwrap_or(PartnerKind::PassengerCar));
+        let (kind, size) = (kind.unwrap_or(first.kind), extra.more.map_or(first.size, size_of_kind));
         let place = |plan: ActorPlan| {
-            let second = Actor { id: second_id.clone(), plan, ..actor.clone() };
-            if self.is_in_junction(extra, &second) {
+            let another = Actor { id: id.clone(), kind, size, plan, ..first.clone() };
+            if self.is_in_junction(extra, &another) {
                 return None;
             }
             let mut with = draft.clone();
-            with.actors.push(second.clone());
+            with.actors.push(another);
             let recorded = with.ego.recorded.clone()?;
             with.control = signals::devices(self.told, self.ground, &recorded, &with.actors);
             let scenario = recrash_roads::check(with).ok()?.value;
             let driven = recrash_sim::rehearse(&scenario, Ego::Recorded);
             let seen = Seen::new(self.told, &driven, self.contact_s);
-            (hinders_nobody(&second.id, &scenario, (rollout, &driven)) && seen.holds(extra))
+            (hinders_nobody(id, &scenario, (rollout, &driven)) && seen.holds(extra))
                 .then(|| (scenario.draft().clone(), driven))
         };
-        let other_side = self.at_other_kerb(extra, draft, actor);
-        let beyond = self.beyond_gap(extra, actor).and_then(|by| shifted(&actor.plan, by));
-        let beside = offsets(actor)?.into_iter().filter_map(|by| shifted(&actor.plan, by));
+        let other_side = self.at_other_kerb(extra, draft, first);
+        let beyond = self.beyond_gap(extra, first).and_then(|by| shifted(&first.plan, by));
+        let beside = drawn.iter().flat_map(|actor| {
+            let by = offsets(actor).unwrap_or_default();
+            by.into_iter().filter_map(|by| shifted(&actor.plan, by))
+        });
         beyond.into_iter().chain(other_side).chain(beside).find_map(place)
     }
 
@@ -88,17 +109,16 @@ impl Scene<'_> {
     }
 }
 
-/// Its name; nothing where there is a second one already. At the kerbs of both sides two stand, and a third is the second on its side; and
-/// of those near a number names another one.
-fn second_id(extra: &Extra, draft: &ScenarioDraft) -> Option<String> {
+/// The names of the first and of those with it; of those near a number names another one. At the kerbs of both sides two stand, and a third is
+/// the second on its side.
+fn ids(extra: &Extra) -> Vec<String> {
     let id = extra.id();
-    let is_free = |id: &String| draft.actors.iter().all(|actor| actor.id != *id);
-    match extra.role {
-        Role::Near => Some(format!("{id}-too")),
-        Role::Kerb => (2..=3).map(|number| format!("{id}-{number}")).find(is_free),
-        _ => Some(format!("{id}-2")),
-    }
-    .filter(is_free)
+    let more = (2..=extra.number + 1).map(|number| match (extra.role, number) {
+        (Role::Near, 2) => format!("{id}-too"),
+        (Role::Near, number) => format!("{id}-too-{}", number - 1),
+        _ => format!("{id}-{number}"),
+    });
+    [id.clone()].into_iter().chain(more).collect()
 }
 
 fn length_m(actor: &Actor) -> f64 {

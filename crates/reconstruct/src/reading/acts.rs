@@ -34,8 +34,11 @@ pub(super) fn told(party: &Party, state: ContactState) -> Vec<Doing> {
                     || leaves_before(fact, party)
             }
             Act::Park => list.last().is_some_and(|last| stands(last.act)),
-            // So did who came out of a lot and drove along since.
-            Act::PullOut => list.is_empty() && told_of(&party.movement) == Some(Movement::Straight),
+            // So did who came out of a lot and drove along since; and who runs a red light came out of a street.
+            Act::PullOut => {
+                let runs = acts[number..].iter().any(|later| later.act == Act::RunRed);
+                list.is_empty() && (runs || told_of(&party.movement) == Some(Movement::Straight))
+            }
             // What somebody who stands, or had yet to, tried to.
             Act::Reverse => fact.begun && state.stands(),
             // Who had only begun to pass on a side has gone out to it.

@@ -112,6 +112,7 @@ impl Told {
         let pushed_rolling = (partner.did(Act::Follow) || partner.did(Act::Slow))
             && !(partner.did(Act::Stop) || partner.did(Act::Hold) || cp.state.stands());
         let sv_reverses = sv.state == ContactState::Reversing;
+        let cp_reverses = cp.state == ContactState::Reversing;
         let (backs_late, backs_early) = backs_behind(&account.sv, partner, origin);
         let (backs_late, backs_early) = match (cp.state, sv.state) {
             (ContactState::Reversing, ContactState::Moving) if slows_behind(&account.sv, partner, origin) => {
@@ -147,6 +148,7 @@ impl Told {
             order,
             // What "was propelled into the road" by nobody who is told came there.
             pushed: partner.did(Act::Pushed)
+                && !cp_reverses
                 && !(thing.is_some() && account.others.is_empty() && things::is_pushed_by_nobody(partner))
                 || crash_type == CrashType::Secondary
                 || account.others.iter().any(|other| other.touched_partner),
@@ -156,6 +158,7 @@ impl Told {
             pusher_stands: others::pusher_stands(account),
             pushed_rolling,
             throwers: account.others.iter().filter(|other| other.touched_partner).count().min(1),
+            sv_trailer: trailer::touches(&account.sv),
             trailer_of: kind.filter(|_| trailer::touches(partner)),
             wanted_rig,
             rig: None,

@@ -1,6 +1,8 @@
 //! Others than the two: who is told of besides them, and why the ego stood.
 
-use crate::reading::story::{Story, has_siren, is_at_junction, is_parked, lets_in_at_green, stays_close};
+use crate::reading::story::{
+    Story, has_siren, is_at_junction, is_parked, lets_in_at_green, parks_backwards, stays_close,
+};
 use crate::reading::words::{before_contact, span, text};
 use crate::told::crash::Told;
 use crate::told::near::Near;
@@ -88,15 +90,16 @@ fn is_light(kind: Kind) -> bool {
 pub(super) fn wanted(told: &Told, account: &Account) -> Vec<Extra> {
     let story = Story { account };
     let mut list: Vec<Extra> = Vec::new();
-    for (number, other) in account.others.iter().enumerate() {
+    for (at, other) in account.others.iter().enumerate() {
         let kind = other.kind.value;
         let near = |list: &[Extra]| {
             let before = list.iter().filter(|extra| extra.role == Role::Near).count();
             let near = Near::of(other, &text(&other.kind.source), before).filter(|_| !other.touched_partner);
             let (awaited, several) = (story.is_near(other) || story.comes_with_siren(other), other.several);
+            let number = number_of(other);
             let after_turn = story.is_after_turn(told, other);
             let near = near.map(|near| Near { after_turn, ..near });
-            let near = near.map(|near| if told.dropped == Some(number) { near.ahead() } else { near });
+            let near = near.map(|near| if told.dropped == Some(at) { near.ahead() } else { near });
             let near = near.map(|near| {
                 if story.goes_first(told, other) {
                     near.gone_first(Story::first_from(told) == Role::Oncoming)
@@ -105,7 +108,7 @@ pub(super) fn wanted(told: &Told, account: &Account) -> Vec<Extra> {
                 }
             });
             let hides = other.hides;
-            near.map(|near| Extra { awaited, several, hides, ..Extra::near(near, number, kind) })
+            near.map(|near| Extra { awaited, several, number, hides, ..Extra::near(near, at, kind) })
         };
         // Traffic that an ego passes which is not told to have slowed or stood is there.
         let passes =
@@ -137,10 +140,17 @@ pub(super) fn wanted(told: &Told, account: &Account) -> Vec<Extra> {
                 if kind.partner_kind().is_none_or(|kind| known.kind.partner_kind() == Some(kind))
                     || is_of_queue(known, other) =>
             {
+                // "Behind a bus in traffic": one of them is a bus.
+                if !known.several {
+                    known.more = Some(kind);
+                } else if known.kind.partner_kind().is_none() {
+                    known.more = Some(known.kind);
+                }
                 if known.kind.partner_kind().is_none() {
                     known.kind = kind;
                 }
-                known.of.push(number);
+                known.of.push(at);
+                known.number = known.number.max(number_of(other));
                 known.goes |= goes;
                 known.parked |= parked;
                 known.several = true;
@@ -161,7 +171,7 @@ pub(super) fn wanted(told: &Told, account: &Account) -> Vec<Extra> {
                 let passed = matches!(role, Role::Kerb | Role::Obstacle) && story.goes_by(told, other);
                 let goes_out = role == Role::Passed && story.is_reason_to_go_out(told, other);
                 list.push(Extra {
-                    of: vec![number],
+                    of: vec![at],
                     kind,
                     goes,
                     parks,
@@ -182,6 +192,7 @@ pub(super) fn wanted(told: &Told, account: &Account) -> Vec<Extra> {
                     stays,
                     opposite: other.place.as_ref().is_some_and(|fact| fact.value == Origin::Opposite),
                     several: other.several,
+                    number: number_of(other),
                     side,
                     astride: other.astride.as_ref().map(|fact| fact.value),
                     ..Extra::of_reason(role)
@@ -196,10 +207,23 @@ pub(super) fn wanted(told: &Told, account: &Account) -> Vec<Extra> {
     list
 }
 
+/// How many of them are drawn where several are told: as many as are counted, up to four, and three where they are more than a few.
+fn number_of(other: &Other) -> usize {
+    const MANY: [&str; 8] = ["several", "group", "crowd", "class", "many", "multiple", "handful", "numerous"];
+    let words = text(&other.kind.source);
+    let of = |word: &str| match word {
+        "three" => Some(3),
+        "four" | "five" | "six" | "seven" | "eight" | "nine" | "ten" | "dozen" | "fifteen" | "twenty" => Some(4),
+        word => MANY.contains(&word).then_some(3),
+    };
+    words.split(|letter: char| !letter.is_alphanumeric()).find_map(of).unwrap_or(2)
+}
+
 /// Whether somebody is on its way into a space at the kerb: "a parallel parking van".
 fn is_parking(other: &Other) -> bool {
     let acts = before_contact(other).map(|fact| text(&fact.source));
-    acts.chain([text(&other.kind.source)]).any(|words| words.contains("parallel parking") || words.ends_with("parking"))
+    let parks = |words: String| words.contains("parallel parking") || words.ends_with("parking");
+    parks_backwards(other) || acts.chain([text(&other.kind.source)]).any(parks)
 }
 
 /// Whether somebody with a siren is told of without a place or a deed: it is nobody who stands ahead.

@@ -70,6 +70,28 @@ fn cuts_in(other: &Other) -> bool {
     before_contact(other).any(into)
 }
 
+/// Whether words are for a place to park.
+fn is_space(words: &str) -> bool {
+    ["parking", "space", "spot", "stall"].iter().any(|word| words.contains(word))
+}
+
+/// Whether somebody backs into a place to park: "stopped behind a van that was backing into a parking space".
+pub(super) fn parks_backwards(other: &Other) -> bool {
+    let into = |fact: &ActFact| {
+        let words = text(&fact.source);
+        fact.act == Act::Reverse && words.contains(" into ") && is_space(&words)
+    };
+    before_contact(other).any(into)
+}
+
+/// Whether somebody ahead backs out of a place to park: "a pickup reversing into its lane from a parking spot ahead".
+fn backs_out(other: &Other) -> bool {
+    let words = other.place.as_ref().map(|fact| text(&fact.source)).unwrap_or_default();
+    let out =
+        ["from", "out of"].iter().find_map(|out| words.split_once(&format!("{out} a "))).map(|(_, behind)| behind);
+    out.is_some_and(is_space) && !parks_backwards(other)
+}
+
 /// Words for one that stands in a lane.
 const IN_LANE: [&str; 6] = ["in-lane", "in lane", "in the lane", "in its lane", "double-parked", "double parked"];
 
@@ -557,7 +579,8 @@ impl Story<'_> {
         if drives && self.keeps_abreast(told, place) {
             return Some(Role::Abreast);
         }
-        if did(&[Act::Reverse]) && matches!(place, Some(Origin::Beside { .. })) && (near || reacts) {
+        let aside = matches!(place, Some(Origin::Beside { .. })) || place == Some(Origin::Ahead) && backs_out(other);
+        if did(&[Act::Reverse]) && aside && (near || reacts) {
             return Some(Role::Backer);
         }
         // Who waits there to turn itself comes towards nobody.
@@ -603,7 +626,8 @@ impl Story<'_> {
         if sign && near && acts_not && place.is_none() && !ahead && !queue && lets_go {
             return Some(Role::Crosser);
         }
-        let leaves = did(&[Act::LaneChange, Act::Enter, Act::PullOut, Act::Cross, Act::Reverse, Act::Pass, Act::Drift]);
+        let leaves = did(&[Act::LaneChange, Act::Enter, Act::PullOut, Act::Cross, Act::Pass, Act::Drift])
+            || did(&[Act::Reverse]) && !parks_backwards(other);
         let pulls_out = did(&[Act::PullOut]) && !told.comes_from_aside();
         let came_over = did(&[Act::LaneChange])
             || cuts_in(other) && self.makes_room(told, other)

@@ -1,4 +1,4 @@
-//! Partners whose trailer is told to have touched.
+//! Whose trailer is told to have touched.
 
 use crate::told::rig::Rig;
 use crate::told::side::Side;
@@ -15,7 +15,8 @@ pub(super) fn touches(partner: &Party) -> bool {
         let text = words(&kind.source);
         text.contains("trailer") && [" side", " corner", " end", " rear"].iter().any(|word| text.contains(word))
     });
-    let part = |text: String| ["the ", "its "].iter().any(|word| text.starts_with(word)) && text.ends_with("trailer");
+    let part =
+        |text: String| ["the ", "its ", "our "].iter().any(|word| text.starts_with(word)) && text.ends_with("trailer");
     let touched = partner.zones.iter().any(|zone| part(words(&zone.source)));
     (named || touched) && told(&partner.kind).and_then(Rig::of).is_some()
 }

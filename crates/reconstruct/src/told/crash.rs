@@ -62,6 +62,8 @@ pub(crate) struct Told {
     /// An oncoming partner left its own side.
     pub(crate) comes_over: bool,
     pub(crate) order: Option<FirstMover>,
+    /// The ego's own trailer is told to have been touched.
+    pub(crate) sv_trailer: bool,
     /// The kind of the partner whose trailer is told to have touched.
     pub(crate) trailer_of: Option<Kind>,
     /// Who comes by with a trailer that touches is drawn as two, where that shows what is told; and what is drawn.

@@ -140,8 +140,11 @@ pub(crate) struct Extra {
     pub(crate) stays: bool,
     /// It is told on the opposite side, and faces as those do who come from there.
     pub(crate) opposite: bool,
-    /// More than one.
+    /// More than one; and how many are to be drawn.
     pub(crate) several: bool,
+    pub(crate) number: usize,
+    /// What those beside the first are, where they are not told by the same name: "a bus" in "traffic".
+    pub(crate) more: Option<Kind>,
     /// On which side of the ego it is, or from which it comes, where told.
     pub(crate) side: Option<LeftRight>,
     /// Over which line of the road its body reaches, where told.
@@ -175,6 +178,8 @@ impl Extra {
             stays: false,
             opposite: false,
             several: false,
+            number: 2,
+            more: None,
             side: None,
             astride: None,
             near: None,

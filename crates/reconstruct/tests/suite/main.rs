@@ -8,6 +8,7 @@ mod between;
 #[path = "../../../reader/tests/suite/common.rs"]
 #[allow(dead_code, reason = "the reader's own tests use the rest")]
 mod common;
+mod counted;
 mod courses;
 mod doors;
 mod drives;
@@ -22,6 +23,7 @@ mod moves;
 mod near;
 mod near_deeds;
 mod others;
+mod own_trailer;
 mod own_way;
 mod places;
 mod places_of_others;
