@@ -1,6 +1,7 @@
 //! Numbers and lengths that more than one part goes by, where nobody tells another.
 
 use recrash_model::math;
+use recrash_plan::constants::COMFORTABLE_MPS2;
 
 /// Width of driving lanes. [m]
 pub(crate) const LANE_M: f64 = 3.4;
@@ -16,7 +17,7 @@ pub(crate) const STANDS_MPS: f64 = 0.1;
 
 /// A course goes on behind the place of the contact, so far that nobody slows for its end before it. [m]
 pub(crate) fn beyond_m(speed_mps: f64) -> f64 {
-    20.0 + 5.0 * speed_mps
+    20.0 + (5.0 * speed_mps).max(speed_mps * speed_mps / (2.0 * COMFORTABLE_MPS2))
 }
 
 /// Nothing on wheels, longer than the first, bends its line tighter than the second. [m]

@@ -207,6 +207,9 @@ pub struct Party {
     /// Over which line of the road its body reaches, who is partly in one lane and partly elsewhere.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub astride: Option<Fact<Astride>>,
+    /// To which side it is told to be about to turn, of who has not begun a turn.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub turns_next: Option<Fact<LeftRight>>,
     /// Speeds told, with what they mean.
     pub speeds: Vec<Fact<Speed>>,
     /// Where it was touched; empty where that is not told.

@@ -76,14 +76,13 @@ fn count(word: &str) -> Option<u8> {
 /// A road has no more lanes in one direction.
 const MOST_LANES: u8 = 6;
 
-/// The lane with this number from the left, of so many where that is told.
+/// The lane with this number from the left, of so many where that is told; of which else one more is there.
 const fn of_so_many(number: u8, many: Option<u8>) -> Option<LaneWord> {
     match (number, many) {
         (1, _) => Some(LaneWord::Left),
         (_, Some(many)) if number == many => Some(LaneWord::Right),
-        (_, Some(many)) if number < many => Some(LaneWord::Center),
-        // Of how many it is the second is not told.
-        _ => None,
+        (_, Some(many)) if number > many => None,
+        _ => Some(LaneWord::Center),
     }
 }
 
@@ -367,10 +366,23 @@ impl Chunker<'_> {
                     return Some((lane, at + 4 - behind));
                 }
                 let many = if self.text(at + 1) == "of" { count(self.text(at + 2)) } else { None };
-                let lane = of_so_many(count(self.text(at))?, Some(many?))?;
-                Some((lane, at + 3 - behind))
+                if many.is_none() && !self.is_name_of_lane(lane) {
+                    return None;
+                }
+                let named = of_so_many(count(self.text(at))?, many)?;
+                Some((named, at + if many.is_some() { 3 } else { 1 } - behind))
             }
         }
+    }
+
+    /// "in lane 3", "from lane 4 into lane 3 of the highway": a number behind "lane" is its name where no article stands before that; not
+    /// "changed lane 2 seconds before".
+    fn is_name_of_lane(&self, lane: usize) -> bool {
+        let before = matches!(self.text(lane.wrapping_sub(1)), "in" | "into" | "from" | "to" | "within" | "out" | "of");
+        let ends = matches!(self.text(lane + 2), "." | "," | ";" | ")" | "of" | "on" | "in" | "into" | "to" | "and");
+        let ends =
+            ends || matches!(self.text(lane + 2), "" | "when" | "while" | "as" | "with" | "at" | "for" | "behind");
+        self.text(lane) == "lane" && before && ends
     }
 
     /// "(a lane) reserved for right turns", "for turning left", "for parking".
@@ -490,7 +502,7 @@ impl Chunker<'_> {
         Some((of_so_many(number, many)?, end - at))
     }
 
-    /// "the second lane on a four-lane section": in the middle, where more are told than that.
+    /// "the second lane on a four-lane section": in the middle, where more are told than that; "in the second lane" is too, on any road.
     fn ordinal_lane(&self, at: usize) -> Option<(LaneWord, usize)> {
         let number = match self.text(at) {
             "second" | "2nd" => 2,
@@ -498,6 +510,12 @@ impl Chunker<'_> {
             _ => return None,
         };
         let lane = at + 1 + usize::from(matches!(self.text(at + 1), "travel" | "through" | "traffic" | "driving"));
+        let ends =
+            matches!(self.text(lane + 1), "." | "," | "and" | "when" | "while" | "as" | "with" | "behind" | "at");
+        let plain = at >= 2 && self.text(at - 1) == "the" && matches!(self.text(at - 2), "in" | "within");
+        if number == 2 && plain && ends && self.text(lane) == "lane" {
+            return Some((LaneWord::Center, lane + 1 - at));
+        }
         let on = matches!(self.text(lane + 1), "of" | "on" | "in") && matches!(self.text(lane + 2), "a" | "an" | "the");
         let many = count(self.text(lane + 3)).filter(|_| on && matches!(self.text(lane + 4), "lane" | "lanes"))?;
         // From which side it is counted is not told.

@@ -41,7 +41,12 @@ pub(super) fn astride(reading: &Reading<'_>, actor: Actor) -> Option<Fact<Astrid
         }
         let act = act_of(reading, (at, end), actor)?;
         let line = line(reading, (at, frame), act, (first.0, second.map(|named| named.0)))?;
-        let when = when(act, was_so(reading, at));
+        // "moved partly into the oncoming lane": it is so when they touch.
+        let goes = matches!(
+            word(reading, at.wrapping_sub(1)),
+            "moved" | "shifted" | "edged" | "nudged" | "pulled" | "steered"
+        );
+        let when = if goes && !stands(act) { AstrideWhen::Contact } else { when(act, was_so(reading, at)) };
         Some(reading.told(Astride { line, side: side(line, first.0, second), when }, at, end))
     })
 }
@@ -69,6 +74,9 @@ fn partly(reading: &Reading<'_>, at: usize) -> Option<(Named, Option<Named>)> {
         let plain = matches!(named.0, Region::Lane { .. } | Region::Way(_));
         return Some((if plain { (Region::Lane { side: None, other: true }, named.1) } else { named }, None));
     }
+    if let Some(end) = in_middle(reading, at) {
+        return Some(((Region::Over, end), None));
+    }
     let reaches = ["encroach", "protrud", "intrud", "jut"].iter().any(|stem| word(at).starts_with(stem));
     let reaches = reaches && (word(at).ends_with("ing") || is_partly(word(at.wrapping_sub(1))));
     if reaches && leads_in(word(at + 1)) {
@@ -90,6 +98,17 @@ fn partly(reading: &Reading<'_>, at: usize) -> Option<(Named, Option<Named>)> {
         return None;
     }
     Some((first, and_partly(reading, first.1)))
+}
+
+/// "down the middle of the aisle", "in the center of the narrow roadway": who drives so is over the line between the directions.
+fn in_middle(reading: &Reading<'_>, at: usize) -> Option<usize> {
+    let word = |at: usize| word(reading, at);
+    let leads = matches!(word(at), "in" | "down" | "up" | "along") && word(at + 1) == "the" && word(at + 3) == "of";
+    let middle = leads && matches!(word(at + 2), "middle" | "center") && matches!(word(at + 4), "the" | "a" | "an");
+    let road = |word: &str| matches!(word, "road" | "roadway" | "street" | "aisle" | "alley" | "driveway");
+    let noun = (at + 5..at + 7).find(|&at| road(word(at))).filter(|_| middle)?;
+    let drives = told_of(reading, at).is_some_and(|frame| frame.act() == Some(Act::Follow));
+    drives.then_some(noun + 1)
 }
 
 /// "and partially in the parking lane", "and the bike lane", behind the first of two places.

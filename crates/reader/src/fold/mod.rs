@@ -1,5 +1,6 @@
 //! The account, folded from the event frames and held against the columns.
 
+mod about_to;
 mod across;
 mod acts;
 mod astride;

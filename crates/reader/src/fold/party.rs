@@ -1,6 +1,7 @@
 //! One side: what the words tell of it, each by its file, and then what only the columns tell.
 
 use super::Reading;
+use super::about_to::turns_next;
 use super::acts::acts;
 use super::astride::astride;
 use super::controls::controls;
@@ -59,6 +60,7 @@ pub(crate) fn party(reading: &Reading<'_>, actor: Actor) -> Party {
             .or_else(|| in_the_lane_of_the_other_way(reading, actor))
             .map(|(lane, first, end)| reading.told(lane, first, end)),
         astride: astride(reading, actor),
+        turns_next: None,
         speeds: speeds(reading, actor),
         zones: zones(reading, actor),
         controls: controls(reading, actor),
@@ -66,6 +68,7 @@ pub(crate) fn party(reading: &Reading<'_>, actor: Actor) -> Party {
     if told(&party.state).is_some_and(ContactState::stands) || (party.state.is_none() && actor == SUBJECT) {
         party.reasons = reasons(reading, actor);
     }
+    party.turns_next = turns_next(reading, actor, &party.acts);
     party.lane = party.lane.take().filter(|lane| !is_strip_beside(lane, party.astride.as_ref()));
     party
 }

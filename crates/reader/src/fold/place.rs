@@ -148,7 +148,8 @@ fn lanes(reading: &Reading<'_>, place: &mut Place, first: usize, end: usize) {
         // "a single lane change", "a single lane of traffic" tell nothing of the road.
         let of_lane = matches!(word(2), "change" | "changes" | "shift" | "merge" | "closure")
             || (word(2), word(3)) == ("of", "traffic");
-        let single = (word(0) == "single" && !of_lane).then_some(1);
+        let only = word(0) == "only" && at > first && tokens[at - 1].text == "the" && word(1) == "lane";
+        let single = (word(0) == "single" && !of_lane || only).then_some(1);
         let Some(number) = number(&tokens[at].text).or(single) else { continue };
         let next: Vec<&str> = tokens[at + 1..end.min(at + 5)].iter().map(|token| token.text.as_str()).collect();
         let lanes = next.iter().position(|word| matches!(*word, "lanes" | "lane"));
@@ -171,6 +172,7 @@ fn lanes(reading: &Reading<'_>, place: &mut Place, first: usize, end: usize) {
         let word =
             |back: usize| at.checked_sub(back).filter(|at| *at >= first).map_or("", |at| tokens[at].text.as_str());
         let of = matches!(word(1), "of" | "a" | "with" | "has" | "the") || (word(2), word(1)) == ("way", ",");
+        let number = if is_both_ways(reading, (first, at, end)) { number / 2 } else { number };
         if plain && of && place.lanes.is_none() && (1..=8).contains(&number) {
             place.lanes = Some(reading.told(number, at, at + 2));
         }
@@ -180,4 +182,15 @@ fn lanes(reading: &Reading<'_>, place: &mut Place, first: usize, end: usize) {
             place.arms = Some(reading.told(number, at, at + 3));
         }
     }
+}
+
+/// "a two-lane road", "a four-lane highway": half of them lead each way; not "a two-lane one-way street", "the right lane of a two-lane road".
+fn is_both_ways(reading: &Reading<'_>, (first, at, end): (usize, usize, usize)) -> bool {
+    let word = |at: usize| reading.story.tokens.get(at).map_or("", |token| token.text.as_str());
+    let road = matches!(word(at + 2), "road" | "street" | "highway" | "stretch") && word(at + 1) == "lane";
+    let one_way = (first..end).any(|at| word(at) == "one" && word(at + 1) == "way");
+    let of_lane = (first.max(at.saturating_sub(3))..at).any(|at| matches!(word(at), "lane" | "lanes"));
+    let way = (at + 3..end.min(at + 5)).any(|at| crate::chunk::bound(word(at)).is_some());
+    let any = at > first && word(at - 1) == "a";
+    road && any && matches!(word(at), "two" | "2" | "four" | "4") && !one_way && !of_lane && !way
 }

@@ -558,6 +558,13 @@ impl Parser<'_> {
         place && matches!(word(1 + article), "of" | "along" | "off" | "beside" | "by")
     }
 
+    /// "turned without checking the oncoming lane": who looks at a lane is not in it for that.
+    fn is_looked_at(&self, first: usize) -> bool {
+        let word = |back: usize| first.checked_sub(back).map_or("", |at| self.tokens[at].text.as_str());
+        let verb = word(1 + usize::from(crate::chunk::is_determiner(word(1))));
+        ["check", "watch", "scan", "monitor", "observ"].iter().any(|stem| verb.starts_with(stem))
+    }
+
     pub(super) fn lane(&mut self, lane: LaneWord, placed: &Placed, carry: &mut Carry, next: Option<&Chunk>) {
         let fronted = matches!(next, Some(Chunk::Noun(_) | Chunk::Pronoun | Chunk::Piece(_)));
         // "kept to the right lane": it is in it.
@@ -586,6 +593,7 @@ impl Parser<'_> {
             || self.is_lane_of_a_place(placed.first)
             || self.is_lane_of_others(placed.first)
             || self.is_astride(placed)
+            || self.is_looked_at(placed.first)
         {
             return;
         }

@@ -154,6 +154,7 @@ pub fn facts(account: &Account) -> BTreeMap<&'static str, String> {
         ("hiding", hiding.join(" ")),
         ("sv_kind", name(&sv.kind)),
         ("sv_lane", name(&sv.lane)),
+        ("sv_turns_next", name(&sv.turns_next)),
         ("sv_astride", sv.astride.as_ref().map(over).unwrap_or_default()),
         ("cp_astride", partner.astride.as_ref().map(over).unwrap_or_default()),
         ("others_astride", other_lines.join(" ")),

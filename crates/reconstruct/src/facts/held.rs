@@ -20,7 +20,9 @@ use crate::told::rig::Rig;
 use crate::told::side::Side;
 use crate::touch::opening::{self, DOOR_M};
 use recrash_metrics::contact::{ContactGeometry, contact_geometry};
-use recrash_model::account::{Astride, Control as Said, ControlDevice, Kind, Obeyed, Origin, StandReason, Striker};
+use recrash_model::account::{
+    Astride, Control as Said, ControlDevice, Kind, LaneWord, Obeyed, Origin, StandReason, Striker,
+};
 use recrash_model::geometry::OrientedBox;
 use recrash_model::metrics::{Check, CheckKind, CheckResult};
 use recrash_model::rollout::{ActorState, ActorTrack, Rollout, STEP_S};
@@ -358,8 +360,11 @@ impl<'a> Crash<'a> {
             (CheckKind::CpLane, &self.told.cp, self.partner_track),
         ];
         sides.into_iter().filter_map(|(kind, side, track)| {
-            let (word, track) = (side.lane.filter(|_| !side.lane_to_come)?, track?);
-            let counted = self.told.counted(kind == CheckKind::SvLane);
+            // Who is about to turn left is in the lane from which that is done.
+            let of_ego = kind == CheckKind::SvLane;
+            let to_come = || (of_ego && self.told.waits_to_turn_left()).then_some(LaneWord::LeftTurn);
+            let (word, track) = (side.lane.filter(|_| !side.lane_to_come).or_else(to_come)?, track?);
+            let counted = self.told.counted(of_ego);
             let expected = counted.map_or(lane_words(word).to_owned(), Counted::words);
             let seen = lane((self.told, word), self.scenario, [self.ego_track, track], self.touch.time_s);
             Some(held(kind, expected, seen))

@@ -22,9 +22,11 @@ use recrash_roads::{RoadPart, Scenario};
 pub(super) const KEEPS_M: f64 = 0.7;
 
 /// Who is told to leave its lane may be on its way out of it for so long before the contact; who is not told to, comes to the told zones in
-/// the last of its way. Who comes out of the ego's lane to pass goes along between two before. [s]
+/// the last of its way. Who comes out of the ego's lane to pass goes along between two before; and for whom, oncoming, the ego stopped had come
+/// over before that. [s]
 const LEAVES_S: f64 = 3.0;
 const PASSES_S: f64 = 5.0;
+const CAME_OVER_S: f64 = 8.0;
 const NEARS_S: f64 = 2.0;
 
 /// Between lanes somebody who leaves its own is at more than this to them. [rad]
@@ -58,6 +60,7 @@ pub(super) fn off_lane_s(told: &Told, scenario: &Scenario, track: &ActorTrack, c
         || told.drives_elsewhere()
         || told.pulls_out_opposite()
         || told.squeezes_by()
+        || told.meets_in_narrow()
         || if told.cp_drives_over() { is_over(told, scenario, track, contact_s) } else { told.splits_lanes().is_some() }
     {
         return None;
@@ -65,6 +68,7 @@ pub(super) fn off_lane_s(told: &Told, scenario: &Scenario, track: &ActorTrack, c
     let leaves = told.leaves_its_lane();
     let last_s = match leaves {
         true if told.passes_from_behind() => PASSES_S,
+        true if told.origin == Origin::Opposite && told.slows_for_who_came_over() => CAME_OVER_S,
         true => LEAVES_S,
         false => NEARS_S,
     };
@@ -145,7 +149,7 @@ pub(super) fn weaves(told: &Told, track: &ActorTrack, contact_s: f64) -> usize {
     let turned = math::wrap_angle(last.heading - first.heading).abs();
     let beside = matches!(told.origin, Origin::Beside { .. });
     let stays = !told.leaves_its_lane() || told.comes_straight_by() || told.passes_in_own_lane();
-    let stays = stays && !told.squeezes_by();
+    let stays = stays && !told.squeezes_by() && !told.meets_in_narrow();
     let sideways = |pair: &[ActorState]| {
         let rate = math::wrap_angle(pair[1].heading - pair[0].heading).abs() / STEP_S;
         rate * pair[0].velocity().length()

@@ -238,6 +238,11 @@ pub(super) fn check(side: &Side, way: &Way<'_>) -> Option<(String, CheckResult, 
         Movement::ChangingLanes | Movement::Merging | Movement::CrossingIntoOpposingLane => sideways(CHANGED_M),
         Movement::LaneDeparture => sideways(LEFT_LINE_M),
         Movement::Passing => {
+            // Who is told to go round somebody is seen out of its line.
+            let out = sideways(CHANGED_M);
+            if side.goes_round && !out.0 {
+                return Some((word(side), CheckResult::NotShown, out.1));
+            }
             let passed = way.passed();
             if !passed && way.met.speed().abs() > STANDS_MPS {
                 // It passes somebody else.

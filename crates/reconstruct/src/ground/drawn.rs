@@ -27,7 +27,8 @@ pub(crate) fn ground_for(told: &Told) -> Ground {
     let at_one = [Role::Crosser, Role::Blocker, Role::Beyond].into_iter().any(|role| has(told, role));
     let gives_way = told.place != PlaceKind::Highway && (at_one || told.crossed_near);
     let entered = told.place != PlaceKind::Highway && (told.enters() || told.is_followed_in());
-    if (crossing || controlled || gives_way || entered) && !lot || told.place == PlaceKind::Intersection {
+    let to_come = told.waits_to_turn_left() && matches!(told.origin, Origin::Behind | Origin::Opposite);
+    if (crossing || controlled || gives_way || entered || to_come) && !lot || told.place == PlaceKind::Intersection {
         let ground = junction(told, crossing);
         let behind_m: &[f64] = match (told.edge, told.lies) {
             (Some(_), _) => &BEHIND_ENTRY_M,
@@ -41,10 +42,13 @@ pub(crate) fn ground_for(told: &Told) -> Ground {
     }
     let one_way = is_one_way(told);
     let one_sided = one_way || told.keeps_one_way() || told.edge == Some(LeftRight::Left) && !told.edge_is_median();
-    let oncoming = if one_sided || told.place == PlaceKind::Highway { 0 } else { 1 };
+    let oncoming = if one_sided || told.place == PlaceKind::Highway && !told.is_met_on_highway() { 0 } else { 1 };
     let (right, left) = match told.place {
         _ if let Some(side) = told.edge => beside_edge(told, side, lot, oncoming),
-        PlaceKind::Highway => (strips(lanes_for(told, 3), &told.beside_lanes(&[StripKind::Shoulder])), Vec::new()),
+        PlaceKind::Highway => {
+            let beside = told.beside_lanes(&[StripKind::Shoulder]);
+            (strips(lanes_for(told, 3), &beside), if oncoming == 0 { Vec::new() } else { strips(oncoming, &beside) })
+        }
         _ if lot => (strips(lanes_for(told, 1), &[StripKind::Stalls]), strips(oncoming, &[StripKind::Stalls])),
         _ => {
             let stalls = matches!(told.origin, Origin::Stall { .. });

@@ -181,8 +181,9 @@ pub(super) fn junction(told: &Told, crossing: bool) -> Ground {
             let right: &[f64] = if told.sv.turning == Turning::Right { &[6.0, 5.0, 7.0] } else { &[] };
             inside(&[right, &[8.0, 9.0, 10.0, 14.0, 18.0, 22.0]].concat())
         } else if told.goes_straight_beside() {
-            // Where it has begun to turn, and has not come to the partner's lane.
-            inside(&[12.0, 11.0, 13.0, 10.0, 14.0, 6.0, 18.0, 3.0, 22.0, 28.0])
+            // Where it has begun to turn, and has not come to the partner's lane; a turn to the right is over sooner.
+            let right: &[f64] = if told.sv.turning == Turning::Right { &[6.0, 5.0, 7.0, 4.0, 8.0] } else { &[] };
+            inside(&[right, &[12.0, 11.0, 13.0, 10.0, 14.0, 6.0, 18.0, 3.0, 22.0, 28.0]].concat())
         } else if told.turns_into_own_road() {
             inside(&[26.0, 30.0, 22.0, 12.0, 8.0, 16.0, 5.0, 20.0])
         } else if told.sv.turning != Turning::No {

@@ -29,7 +29,11 @@ pub(super) fn is_one_way(told: &Told) -> bool {
 pub(super) fn lanes_for(told: &Told, usual: usize) -> usize {
     // Who comes by on the opposite side, or comes over from there, does so beside the only lane.
     let beside_opposite = told.cp.lane == Some(LaneWord::Opposing) || told.comes_over || told.is_passed_by_oncoming();
-    let usual = if beside_opposite && told.sv.lane.is_none() { 1 } else { usual };
+    let beside_opposite = beside_opposite || told.rounds_other();
+    // Out of the kerb on the right somebody comes to an ego that is about to turn left from the only lane.
+    let from_right = matches!(told.origin, Origin::Parked { side: Some(LeftRight::Right) });
+    let beside_both = beside_opposite || from_right && told.waits_to_turn_left();
+    let usual = if beside_both && told.sv.lane.is_none() { 1 } else { usual };
     // A street with driveways, or stalls, on both sides.
     let from_left = matches!(
         told.origin,
@@ -152,7 +156,9 @@ impl Told {
     /// Whether the street is told to be one-way, and nobody of the story is told to be on its other side.
     pub(super) fn keeps_one_way(&self) -> bool {
         let lanes = [self.sv.lane, self.cp.lane];
-        let opposing = self.origin == Origin::Opposite || lanes.contains(&Some(LaneWord::Opposing));
+        // Who goes the wrong way does so along it.
+        let against = self.cp.movement == Some(Movement::WrongWay);
+        let opposing = self.origin == Origin::Opposite && !against || lanes.contains(&Some(LaneWord::Opposing));
         let over = [self.sv.movement, self.cp.movement].contains(&Some(Movement::CrossingIntoOpposingLane));
         self.layout.one_way && !opposing && !over && !has(self, Role::Oncoming)
     }

@@ -237,8 +237,9 @@ impl Scene<'_> {
             return ActorPlan::standing(Place::at(pose.position.x, pose.position.y, pose.heading.to_degrees()));
         }
         // An ego that is on its way past it within its lane has it abreast.
-        let came_m = line_m.unwrap_or_else(|| self.at(self.until).1);
-        let line_m = line_m.filter(|line_m| !extra.passed || (self.at(self.until).1 - line_m).abs() > BESIDE_M);
+        let beside = line_m.filter(|_| !self.told.rounds_other());
+        let came_m = beside.unwrap_or_else(|| self.at(self.until).1);
+        let line_m = beside.filter(|line_m| !extra.passed || (self.at(self.until).1 - line_m).abs() > BESIDE_M);
         let (s_m, t_m) = match line_m {
             Some(line_m) => {
                 let left = (0..self.until).find(|step| (self.at(*step).1 - line_m).abs() > BESIDE_M);

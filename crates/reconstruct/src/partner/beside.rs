@@ -13,6 +13,9 @@ use recrash_model::math;
 use recrash_model::scenario::StripKind;
 use recrash_model::vehicle::VehicleSpec;
 
+/// Who squeezes by comes along one line, and nearer to the ego on the last of its way alone. [m]
+pub(super) const SQUEEZES_M: f64 = 10.0;
+
 /// From how far away somebody pulls out at least. [m]
 pub(super) const PULL_OUT_M: f64 = 8.0;
 
@@ -64,8 +67,15 @@ pub(super) fn line_y_m(told: &Told, staging: &Staging) -> Option<f64> {
     if wrong_side && told.squeezes_by() {
         return Some(staging.cp.position.y.max(staging.ground.sv_pose(0.0).position.y - 0.5 * LANE_M) + 0.5 * LANE_M);
     }
+    if told.squeezes_by() {
+        let turn = math::wrap_angle(staging.cp.heading - staging.cp_came);
+        return Some(staging.cp.position.y + 0.5 * SQUEEZES_M * math::sin(turn.abs()));
+    }
     if told.comes_over || wrong_side {
         return Some(staging.ground.oncoming_y_m(told.cp.lane).max(staging.cp.position.y));
+    }
+    if told.drifts_on_wrong_way() {
+        return Some(staging.cp.position.y + told.cp_from_left_m()?);
     }
     if told.leaves_opposite() {
         return Some(staging.ground.opposing_y_m());

@@ -4,7 +4,7 @@ use crate::ego::pace::ego_paces;
 use crate::ground::way::Ground;
 use crate::pace::lead::Beside;
 use crate::pace::plain::{Pace, first_time};
-use crate::partner::beside::{STOOD_OUT_M, STOOD_RADIUS_M, line_y_m};
+use crate::partner::beside::{SQUEEZES_M, STOOD_OUT_M, STOOD_RADIUS_M, line_y_m};
 use crate::told::crash::Told;
 use crate::told::side::Turning;
 use crate::touch::lanes;
@@ -43,8 +43,10 @@ pub(super) fn keeps_lane(told: &Told, staging: &Staging, pace: &Pace, arm_m: f64
     let changed = told.origin == Origin::Behind && told.cp.changed_lanes;
     let leaves = leaves && !told.passes_from_behind() && !changed
         || told.comes_along_kerb() && staging.ground.stands_m > 0.0 && !told.passes_from_behind()
-        || told.strip_y_m(&staging.ground).is_some() && told.cp.turning == Turning::No;
-    let over = told.comes_over || told.is_met_on_wrong_side(&staging.ground, staging.cp);
+        || told.strip_y_m(&staging.ground).is_some() && told.cp.turning == Turning::No
+        || told.drifts_on_wrong_way();
+    let wrong_side = told.is_met_on_wrong_side(&staging.ground, staging.cp);
+    let over = told.comes_over || wrong_side || told.squeezes_by();
     if !(leaves || told.cp.dodges || over) || told.cp.state != ContactState::Moving || pace.speed_mps == 0.0 {
         return None;
     }
@@ -53,9 +55,13 @@ pub(super) fn keeps_lane(told: &Told, staging: &Staging, pace: &Pace, arm_m: f64
     let usual_m = (LEAVES_S * told.cp.speed_mps).clamp(LEAVES_M.0, LEAVES_M.1);
     // It had begun before the ego slowed.
     let since_m = pace.driven_m - pace.speed_mps * (first_time(&pace.acts) - BEGUN_S);
+    if let Some(way) = over_before(told, staging, pace, (arm_m, line_y_m, usual_m)) {
+        return Some(way);
+    }
     let ego_brakes_s = || first_time(&ego_paces(told, &staging.ground, staging.sv_s_m).1.acts);
     let over_m = match told.gives_way_to_merge {
         true => since_m.max(usual_m),
+        false if told.squeezes_by() && !wrong_side => SQUEEZES_M,
         false if told.squeezes_by() => (pace.driven_m - KEPT_M).clamp(usual_m, LEAVES_M.1),
         // It is half over when the ego brakes for it.
         false if told.slows_for_who_came_over() => {
@@ -77,6 +83,25 @@ pub(super) fn keeps_lane(told: &Told, staging: &Staging, pace: &Pace, arm_m: f64
     let before_m = if course.curve(leaves, cp, false) { pace.driven_m - course.length_m() } else { return None };
     let begin = Pose { position: leaves.position - came * before_m, ..leaves };
     (before_m > 1.0).then(|| (begin, vec![leaves, cp]))
+}
+
+/// Who goes straight on since it came over is at no more to its way. [rad]
+const STRAIGHT_RAD: f64 = 0.02;
+
+/// Who comes towards the ego, and had come over when that braked for it, goes straight on since: where it begins, and the poses that it drives by.
+fn over_before(
+    told: &Told,
+    staging: &Staging,
+    pace: &Pace,
+    (arm_m, line_y_m, over_m): (f64, f64, f64),
+) -> Option<(Pose, Vec<Pose>)> {
+    let straight = math::wrap_angle(staging.cp.heading - staging.cp_came).abs() < STRAIGHT_RAD;
+    if told.origin != Origin::Opposite || !straight || !told.slows_for_who_came_over() {
+        return None;
+    }
+    let brakes_s = first_time(&ego_paces(told, &staging.ground, staging.sv_s_m).1.acts);
+    let since_m = told.cp.speed_mps * (told.contact_s - brakes_s);
+    between_lines(staging, pace, arm_m, [(since_m + over_m, line_y_m), (since_m, staging.cp.position.y)])
 }
 
 /// Who passes has come out of the ego's lane so far before the contact, and does so on so much of its way at most. [m]

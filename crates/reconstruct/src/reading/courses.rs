@@ -1,7 +1,7 @@
 //! What the acts tell of the ways of the two, beside their movements.
 
 use crate::reading::order::steps;
-use crate::reading::words::text;
+use crate::reading::words::{before_contact, text};
 use crate::told::crash::Told;
 use crate::told::doing::Doing;
 use crate::told::phase::Phase;
@@ -9,16 +9,18 @@ use crate::told::queue::CREEPS_MPS;
 use crate::told::side::{Side, Slant, Turning};
 use crate::told::zones::side_of;
 use recrash_model::account::{
-    Account, Act, Act as Done, ActFact, ContactState, CrashType, LaneWord, LeftRight, Origin, Party, PlaceKind,
-    SignalState, Source, Standing, Striker, told,
+    Account, Act, Act as Done, ActFact, ContactState, CrashType, KindGroup, LaneWord, LeftRight, Origin, Other, Party,
+    PlaceKind, SignalState, Source, Standing, Striker, told,
 };
 use recrash_model::template::Movement;
 
 impl Told {
     /// What the acts tell of the ways beside the movements.
-    pub(super) fn courses(&mut self, sv: &Party, partner: &Party) {
+    pub(super) fn courses(&mut self, account: &Account, partner: &Party) {
+        let sv = &account.sv;
         self.reactions(sv, partner);
         self.goes_round(sv);
+        self.goes_round_other(account);
         let drives_on =
             |side: &Side| side.aside.is_some() && matches!(side.movement, Some(Movement::Straight | Movement::Passing));
         self.cp.changed_lanes |= self.changed_lanes_behind();
@@ -236,6 +238,26 @@ impl Told {
         let free = self.sv.movement == Some(Movement::Passing) && self.sv.aside.is_none();
         if stands && free && touched != Some(to) && self.sv.turning == Turning::No {
             (self.sv.aside, self.sv.goes_round) = (Some(to), !pass.begun);
+        }
+    }
+
+    /// "Moved partly into the oncoming lane to pass a stopped truck", as somebody came towards it: out of its line to the left, round that one.
+    fn goes_round_other(&mut self, account: &Account) {
+        let pass = account.sv.acts.iter().rfind(|fact| fact.act == Act::Pass && !fact.after_contact);
+        let goes = matches!(self.sv.movement, Some(Movement::Passing | Movement::Straight | Movement::LaneDeparture));
+        let drives = self.sv.state == ContactState::Moving && self.sv.turning == Turning::No && goes;
+        let to_left = self.sv.aside != Some(LeftRight::Right) && !self.sv.acts.iter().any(Doing::is_pass);
+        let met = self.origin == Origin::Opposite && self.cp.turning == Turning::No && !self.comes_over;
+        let stands = |other: &&Other| {
+            let place = told(&other.place);
+            let still = before_contact(other).all(|fact| matches!(fact.act, Act::Hold | Act::Stop | Act::Park));
+            let vehicle = matches!(other.kind.value.group(), KindGroup::Car | KindGroup::Truck);
+            vehicle && still && !other.several && matches!(place, None | Some(Origin::Ahead | Origin::Beside { .. }))
+        };
+        let ego_side = account.others.iter().filter(stands).count() == 1;
+        if pass.is_some() && drives && to_left && met && ego_side && self.thing.is_none() {
+            self.sv.movement = Some(Movement::Passing);
+            (self.sv.aside, self.sv.goes_round) = (Some(LeftRight::Left), true);
         }
     }
 

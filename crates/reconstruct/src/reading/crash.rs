@@ -144,7 +144,7 @@ impl Told {
             heading_told: partner.heading.is_some(),
             faces: courses::faces(&account.sv, partner),
             comes_round,
-            comes_over: origin::comes_over(origin, partner, movement),
+            comes_over: origin::comes_over(origin, [&account.sv, partner], movement),
             order,
             // What "was propelled into the road" by nobody who is told came there.
             pushed: partner.did(Act::Pushed)
@@ -195,7 +195,7 @@ impl Told {
         };
         this.queued = this.was_in_queue(account, partner);
         this.back_straight = this.cp_drives_over();
-        this.courses(&account.sv, partner);
+        this.courses(account, partner);
         this.phases();
         this.gives_way_to_merge = this.stops_for_merge(&account.sv, partner);
         this.wanted = others::wanted(&this, account);

@@ -13,12 +13,20 @@ impl Counted {
     fn of(text: &str) -> Option<Self> {
         let words: Vec<&str> = text.split(|letter: char| !letter.is_alphanumeric()).collect();
         let has = |word: &str| words.iter().any(|other| other.eq_ignore_ascii_case(word));
-        let counts = [(2, "second", "2nd"), (3, "third", "3rd"), (4, "fourth", "4th")];
-        let (number, ..) = counts.into_iter().find(|(_, word, digits)| has(word) || has(digits))?;
+        let counts = [
+            (2, ["second", "2nd", "two", "2"]),
+            (3, ["third", "3rd", "three", "3"]),
+            (4, ["fourth", "4th", "four", "4"]),
+        ];
+        // "The number two lane", "the #2 lane", "lane 2".
+        let numbered = text.contains('#') || has("number") || words.first() == Some(&"lane");
+        let names = |names: &[&str; 4]| names[..if numbered { 4 } else { 2 }].iter().any(|name| has(name));
+        let (number, _) = counts.into_iter().find(|(_, all)| names(all))?;
+        // From the left, where no side is told.
         let from = match (has("left") || has("leftmost"), has("right") || has("rightmost")) {
-            (true, false) => LeftRight::Left,
+            (_, false) => LeftRight::Left,
             (false, true) => LeftRight::Right,
-            _ => return None,
+            (true, true) => return None,
         };
         Some(Self { from, number })
     }
@@ -38,6 +46,10 @@ impl Layout {
             beside_crosswalk: is_told_on(account, partner, &BESIDE_WALK),
             along_kerb: passes_by_kerb(account, partner)
                 || is_told_on(account, partner, &["between"]) && is_told_on(account, partner, &BESIDE_KERB),
+            right_behind: account.came_from.as_ref().is_some_and(|fact| {
+                let words = text(&fact.source);
+                RIGHT_BEHIND.iter().any(|word| words.contains(word))
+            }),
             abreast: drives_abreast(account, partner),
             centre_line: has(RoadFeature::DoubleYellowLine),
             right_lane: goes_out_right(account, partner),
@@ -92,9 +104,21 @@ fn is_told_on(account: &Account, partner: &Party, words: &[&str]) -> bool {
     acts.chain(from).chain(lane).map(text).any(|text| words.iter().any(|word| text.contains(word)))
 }
 
+/// Words for who is behind the ego in its lane.
+const RIGHT_BEHIND: [&str; 2] = ["directly behind", "immediately behind"];
+
 /// Words for two that drive side by side, and for one that comes up to the other.
-const ABREAST: [&str; 8] =
-    ["next to", "alongside", "side by side", "side-by-side", "abreast", "same pace", "beside it", "beside the"];
+const ABREAST: [&str; 9] = [
+    "next to",
+    "to the side of",
+    "alongside",
+    "side by side",
+    "side-by-side",
+    "abreast",
+    "same pace",
+    "beside it",
+    "beside the",
+];
 const COMES_UP: [&str; 6] = ["came up", "coming up", "approach", "overt", "pass", "behind"];
 
 /// Whether words for the place of a partner beside the ego have the two drive side by side: "a van was next to it in the left lane"; not who
@@ -203,6 +227,9 @@ fn stands_at_kerb(account: &Account, party: &Party) -> bool {
 
 /// Whether somebody is told to be about to turn left, or to do so after the contact, and not to have turned before.
 fn goes_to_turn_left(party: &Party) -> bool {
+    if told(&party.turns_next) == Some(LeftRight::Left) {
+        return true;
+    }
     let left = |fact: &ActFact| fact.act == Act::Turn && fact.side == Some(LeftRight::Left);
     let turned = party.acts.iter().any(|fact| fact.act == Act::Turn && !fact.after_contact && !fact.begun);
     !turned && party.acts.iter().any(left)
@@ -307,6 +334,10 @@ mod tests {
         assert_eq!((second.place(4), second.words().as_str()), (Some(1), "the second lane from the left"));
         let fourth = Counted::of("the fourth from the right lane").unwrap();
         assert_eq!((fourth.place(5), fourth.words().as_str()), (Some(1), "the fourth lane from the right"));
+        let third = Counted::of("lane 3").unwrap();
+        assert_eq!((third.place(4), third.place(2)), (Some(2), None));
+        assert_eq!(Counted::of("number two lane").unwrap().place(3), Some(1));
         assert_eq!(Counted::of("the right lane"), None);
+        assert_eq!(Counted::of("the left of two lanes"), None);
     }
 }

@@ -50,7 +50,10 @@ pub(super) fn at_left_kerb(account: &Account, (origin, cp): (Origin, &Side), els
 }
 
 /// Whether an oncoming partner is told to have left its own side.
-pub(super) fn comes_over(origin: Origin, partner: &Party, movement: Option<Movement>) -> bool {
+pub(super) fn comes_over(origin: Origin, [sv, partner]: [&Party; 2], movement: Option<Movement>) -> bool {
+    // "It stopped for a car in its lanes, and that drifted towards the kerb": it was on the wrong side before.
+    let answers = |fact: &ActFact| matches!(fact.act, Act::Slow | Act::Stop | Act::Drift | Act::Swerve);
+    let answered = |step: u32| sv.acts.iter().any(|fact| fact.step <= step && answers(fact) && !fact.after_contact);
     let left = |act: Act| partner.acts.iter().any(|fact| fact.act == act && !fact.after_contact && !fact.begun);
     let told = match movement {
         Some(Movement::CrossingIntoOpposingLane | Movement::LaneDeparture | Movement::ChangingLanes) => true,
@@ -58,7 +61,8 @@ pub(super) fn comes_over(origin: Origin, partner: &Party, movement: Option<Movem
         // Against the flow at last, and not all the way: it went over to its left.
         Some(Movement::WrongWay) => partner.acts.iter().any(|fact| {
             let over = matches!(fact.act, Act::LaneChange | Act::Drift | Act::Swerve) && !fact.begun;
-            over && !fact.after_contact && fact.side != Some(LeftRight::Right)
+            let late = fact.act == Act::Drift && fact.after_other.is_some_and(answered);
+            over && !late && !fact.after_contact && fact.side != Some(LeftRight::Right)
         }),
         _ => false,
     };

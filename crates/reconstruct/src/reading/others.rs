@@ -262,7 +262,9 @@ fn for_reasons(story: &Story<'_>, told: &Told, list: &mut Vec<Extra>) {
     // It gave way, and nobody says to whom.
     let named = story.account.others.iter().any(|other| story.is_near(other) || story.comes_with_siren(other));
     let named = named || list.iter().any(|extra| GIVEN_WAY.contains(&extra.role));
-    let role = if is_at_junction(told) { Role::Crosser } else { Role::Oncoming };
+    // Who is about to turn left at no stop sign gives way to those who come towards it.
+    let to_left = told.waits_to_turn_left() && Story::first_from(told) == Role::Oncoming;
+    let role = if is_at_junction(told) && !to_left { Role::Crosser } else { Role::Oncoming };
     if told.reasons.contains(&StandReason::Yield) && !named && is_drawn(told, role) {
         list.push(Extra::of_reason(role));
     }

@@ -240,7 +240,8 @@ impl Story<'_> {
     /// Where those come from who go first: towards an ego that turns left at no stop sign, else along the crossing road.
     pub(super) fn first_from(told: &Told) -> Role {
         let sign = told.sv.control.is_some_and(|said| said.device == ControlDevice::StopSign);
-        if told.sv.turning == Turning::Left && !sign { Role::Oncoming } else { Role::Crosser }
+        let left = told.sv.turning == Turning::Left || told.waits_to_turn_left();
+        if left && !sign { Role::Oncoming } else { Role::Crosser }
     }
 
     /// Whether somebody on foot, or an animal, is whom the ego slowed or stood for.
@@ -524,6 +525,8 @@ impl Story<'_> {
         let reacts = self.reactions().next().is_some();
         let because = |reason: StandReason| told.reasons.contains(&reason);
         let stands = did(&[Act::Hold, Act::Stop, Act::Park]) && !did(&[Act::SetOff, Act::Follow, Act::Reverse]);
+        // "Was going around a truck": it is in the way.
+        let stands = stands || acts_not && told.sv.goes_round && self.passes_at(other).is_some();
         if self.goes_first(told, other) {
             return Some(Self::first_from(told));
         }
@@ -561,7 +564,7 @@ impl Story<'_> {
         // Whom it passes on its way out of its line, and whom it has passed and come back behind.
         let passed = told.sv.state.stands() && self.passes_at(other).is_some()
             || self.is_back(other)
-            || self.goes_by(told, other) && matches!(place, None | Some(Origin::Ahead));
+            || (self.goes_by(told, other) || told.rounds_other()) && matches!(place, None | Some(Origin::Ahead));
         if stands && !other.several && passed && told.sv_aside().is_some() {
             return Some(Role::Obstacle);
         }

@@ -15,6 +15,7 @@ const DEPARTS_A_LITTLE_M: f64 = 0.8;
 const WITHIN_LANE_M: f64 = 0.65;
 const STOPS_WITHIN_LANE_M: f64 = 1.1;
 const KERB_M: f64 = 2.6;
+const ROUNDS_M: f64 = 2.0;
 const CHANGES_M: f64 = 2.2;
 
 /// An ego that leaves the kerb, and touches one that is parked there, leaves it by so much. [m]
@@ -83,6 +84,8 @@ impl Told {
             // It changed lanes on its way.
             Movement::Straight if self.sv.changed_lanes && self.sv.aside.is_some() => (0.0, by(left, LANE_M)),
             // It dodged, or drifted, while it drove on.
+            // Beside who stands at the edge of its lane.
+            Movement::Passing if self.rounds_other() => (0.0, -ROUNDS_M),
             Movement::Straight | Movement::Passing if self.sv.aside.is_some() => (0.0, by(left, self.sv_departs_m())),
             _ => return None,
         };
@@ -131,6 +134,7 @@ impl Told {
             Movement::LaneDeparture => DEPARTS_M,
             Movement::EnteringTraffic | Movement::ParkingManeuver => PULLS_OUT_M,
             Movement::Straight if self.cp.aside.is_some() => DEPARTS_M,
+            Movement::WrongWay if self.drifts_on_wrong_way() => DEPARTS_M,
             _ => return None,
         };
         // Who moves to its left came along on its right.
@@ -148,10 +152,10 @@ impl Told {
         Some(from_left.unwrap_or(if against > 0.0 { -1.0 } else { 1.0 }) * way_m)
     }
 
-    /// Whether the partner changes lanes behind the ego, and nobody tells to which side.
+    /// Whether the partner changes lanes behind the ego, and nobody tells to which side, nor that it was right behind it: that leaves its lane.
     pub(crate) fn may_come_from_either(&self) -> bool {
         let changes = matches!(self.cp.movement, Some(Movement::ChangingLanes | Movement::Merging));
-        self.origin == Origin::Behind && changes && self.cp.aside.is_none()
+        self.origin == Origin::Behind && changes && self.cp.aside.is_none() && !self.layout.right_behind
     }
 
     /// Whether the partner turns out of a crossing road into the ego's, against the ego's way.

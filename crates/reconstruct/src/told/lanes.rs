@@ -4,7 +4,7 @@ use crate::told::crash::Told;
 use crate::told::doing::Doing;
 use crate::told::layout::strip_of;
 use crate::told::side::{Turning, is_on_foot};
-use recrash_model::account::{ContactState, LaneWord, LeftRight, Origin};
+use recrash_model::account::{ContactState, LaneWord, LeftRight, Origin, PlaceKind};
 use recrash_model::kinds::PartnerKind;
 use recrash_model::scenario::StripKind;
 use recrash_model::template::Movement;
@@ -39,9 +39,27 @@ impl Told {
             || cp.acts.iter().any(Doing::is_aside)
     }
 
+    /// Whether the ego is told to be about to turn left, of which no lane is told, and goes straight on until the contact, or stands.
+    pub(crate) fn waits_to_turn_left(&self) -> bool {
+        let street = matches!(self.place, PlaceKind::Street | PlaceKind::Intersection);
+        let plain = self.sv.turning == Turning::No && !self.is_at_kerb() && self.sv_aside().is_none();
+        self.layout.left_to_come && self.sv.lane.is_none() && street && plain
+    }
+
     /// Whether the partner is told to have driven where no lane of its direction is.
     pub(crate) fn drives_elsewhere(&self) -> bool {
         self.cp.movement == Some(Movement::WrongWay) || self.cp.lane == Some(LaneWord::Opposing)
+    }
+
+    /// Whether the partner comes towards the ego along a highway, on its own side: that is not divided.
+    pub(crate) fn is_met_on_highway(&self) -> bool {
+        self.origin == Origin::Opposite && self.cp.movement != Some(Movement::WrongWay) && self.thing.is_none()
+    }
+
+    /// Whether an oncoming partner comes along the ego's side of the road, and drifts there.
+    pub(crate) fn drifts_on_wrong_way(&self) -> bool {
+        let there = self.origin == Origin::Opposite && self.cp.movement == Some(Movement::WrongWay) && !self.comes_over;
+        there && self.cp.acts.iter().any(Doing::goes_aside)
     }
 
     /// Whether an oncoming partner is told to have gone straight by the ego, and not to have come over.
@@ -70,6 +88,8 @@ impl Told {
             LaneWord::Right if self.layout.right_lane => lanes.checked_sub(2),
             LaneWord::Left | LaneWord::LeftTurn => Some(0),
             LaneWord::Right | LaneWord::RightTurn => Some(lanes - 1),
+            // Along the kerb.
+            LaneWord::Bus if !of_ego && self.origin == Origin::Opposite => Some(lanes - 1),
             LaneWord::Center => Some(lanes / 2),
             _ => None,
         }

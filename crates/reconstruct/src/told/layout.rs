@@ -55,6 +55,8 @@ pub(crate) struct Layout {
     pub(crate) beside_crosswalk: bool,
     /// It comes by between the ego and the kerb, or who is parked there.
     pub(crate) along_kerb: bool,
+    /// The partner is told to have been right behind the ego: "directly behind".
+    pub(crate) right_behind: bool,
     /// The two are told to have driven side by side.
     pub(crate) abreast: bool,
     /// A double yellow line divides it.

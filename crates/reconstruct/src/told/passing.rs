@@ -166,6 +166,19 @@ impl Told {
         self.layout.narrow && self.is_met_by_oncoming()
     }
 
+    /// Whether the ego goes round somebody on its side of the road, as the partner comes towards it.
+    pub(crate) fn rounds_other(&self) -> bool {
+        self.sv.goes_round && self.origin == Origin::Opposite
+    }
+
+    /// Whether the ego drives straight on past an oncoming partner that has stopped in a narrow street: that has no lane of its own there.
+    pub(crate) fn meets_in_narrow(&self) -> bool {
+        let straight = self.sv.turning == Turning::No && self.cp.turning == Turning::No && self.sv_aside().is_none();
+        let met = self.origin == Origin::Opposite && straight && self.thing.is_none() && self.door.is_none();
+        let stands = self.cp.state == ContactState::Stopped && self.sv.state == ContactState::Moving;
+        self.layout.narrow && met && stands && !self.comes_over
+    }
+
     /// Whether an oncoming partner that drives straight on touches an ego that goes straight on or stands.
     pub(crate) fn is_passed_by_oncoming(&self) -> bool {
         self.origin == Origin::Opposite

@@ -153,6 +153,7 @@ impl<'a> Bodies<'a> {
             (told.crosses_off_lanes(ground, cp), OFF_LANES),
             (told.is_parked_otherwise(ground, cp), PARKED_OTHERWISE),
             (told.swings_out(ground, cp.heading - came), SWINGS_OUT),
+            (told.stands_askew(cp), STANDS_ASKEW),
             (told.stays_in_lane(ground, cp), STAYS_IN_LANE),
         ];
         worse.iter().filter(|(is, _)| *is).map(|(_, steps)| steps).sum()
@@ -195,6 +196,9 @@ const SWINGS_OUT: u32 = 2;
 
 /// Of who is told to stand beside the lanes, that its middle is in one, or that it stands askew.
 const PARKED_OTHERWISE: u32 = 2;
+
+/// Of who stood from the start on the ego's side of the road, that it stands askew.
+const STANDS_ASKEW: u32 = 1;
 
 /// Of who strikes the other with parts that nobody tells, that the other one's front does.
 const OTHER_WAY: u32 = 1;

@@ -159,6 +159,13 @@ impl Told {
         changes && drives && !told && corner && ground.beside(cp.position).1.abs() < 0.5 * LANE_M - TO_LINE_M
     }
 
+    /// Whether a partner that stood from the start along the road would stand askew, of which nobody tells.
+    pub(super) fn stands_askew(&self, cp: Pose) -> bool {
+        let along = matches!(self.origin, Origin::Ahead | Origin::Beside { .. }) && self.sv.turning == Turning::No;
+        let stood = self.cp.state == ContactState::Stopped && self.cp.stands_from_start && self.cp.slants.is_none();
+        along && stood && self.thing.is_none() && !self.diagonal && math::sin(cp.heading).abs() > ASKEW
+    }
+
     /// Whether a partner that is told to stand beside the lanes would stand in one, or askew.
     pub(super) fn is_parked_otherwise(&self, ground: &Ground, cp: Pose) -> bool {
         let askew = math::sin(cp.heading).abs() > ASKEW && !self.diagonal;

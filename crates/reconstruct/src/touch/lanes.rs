@@ -126,6 +126,7 @@ pub(crate) fn from_lane(told: &Told, staging: &Staging, pace: &Pace, arm_m: f64)
     let moves = matches!(told.cp.state, ContactState::Moving | ContactState::SettingOff | ContactState::Stopped);
     let moves = moves && !told.comes_out_from_stand();
     let elsewhere = told.drives_elsewhere() || told.pulls_out_opposite();
+    let elsewhere = elsewhere || told.meets_in_narrow() || told.squeezes_by();
     if !told.comes_along_lanes() || elsewhere || !moves || turn.abs() > TURNS_RAD || told.back_straight {
         return None;
     }
@@ -251,7 +252,8 @@ pub(super) fn bends(told: &Told, (ground, sv): (&Ground, Pose), cp: Pose, came: 
         return bend_from_lane(told, (ground, sv), cp, (came, radius_m)).map_or(NOWHERE, |bend| bend.lanes_off as u32);
     }
     // Along the middle of a narrow street, as straight as it can.
-    if told.squeezes_by() {
+    let over = told.origin == Origin::Opposite && (told.comes_over_line() || told.slows_for_who_came_over());
+    if told.squeezes_by() || told.meets_in_narrow() || over {
         return (turn.abs() / SQUEEZES_RAD).round() as u32;
     }
     let Some(lanes) = Lanes::of(ground, came) else { return 0 };

@@ -11,7 +11,7 @@ use recrash_model::zones::ContactZone;
 use recrash_reconstruct::{Reconstruction, held_against, off_lane_s, reconstruct};
 
 /// Lanes of the ego's first road: those that go its way, and those that come towards it.
-fn lanes(made: &Reconstruction) -> (usize, usize) {
+pub(crate) fn lanes(made: &Reconstruction) -> (usize, usize) {
     let MapSpec::G(map) = &made.draft.map else { panic!("a graph") };
     let driving = |strips: &[recrash_model::scenario::Strip]| {
         strips.iter().filter(|strip| strip.kind == StripKind::Driving).count()

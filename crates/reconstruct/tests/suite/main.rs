@@ -39,6 +39,7 @@ mod sweeps;
 mod task;
 mod things;
 mod third_users;
+mod told_lanes;
 mod walks;
 mod ways;
 mod who_was_first;
