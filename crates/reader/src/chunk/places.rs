@@ -569,6 +569,12 @@ impl Chunker<'_> {
             {
                 (Spot::Driveway, 1)
             }
+            // "pulled out of that exit": of a lot, and no ramp.
+            ("exit", next)
+                if self.is_come_out_of(at) && !matches!(next, "ramp" | "ramps" | "lane" | "lanes" | "door" | "of") =>
+            {
+                (Spot::Driveway, 1)
+            }
             // "out of a space", "from its spot".
             ("space" | "spot" | "bay", _)
                 if at >= 2

@@ -18,16 +18,29 @@ fn steps(party: &Party) -> Vec<u32> {
 }
 
 fn order(reading: &Reading<'_>, acts: &mut [ActFact], others: &[u32]) {
+    let enters: Vec<u32> = acts.iter().filter(|fact| fact.act == Act::Enter).map(|fact| fact.step).collect();
     for fact in acts.iter_mut().filter(|fact| !fact.after_contact) {
-        let comes = |other: &&u32| comes_behind(reading, **other as usize, fact.step as usize);
+        let goes = enters.contains(&fact.step) && goes_in(reading, fact);
+        let comes = |other: &&u32| comes_behind(reading, **other as usize, (fact.step as usize, goes));
         fact.after_other = others.iter().filter(comes).max().copied();
     }
 }
 
-/// Whether the words put the second of two frames behind the first, or let it answer that.
-fn comes_behind(reading: &Reading<'_>, first: usize, second: usize) -> bool {
+/// "proceeded straight into the intersection": with a verb for who drives on something happened.
+fn goes_in(reading: &Reading<'_>, fact: &ActFact) -> bool {
+    let frame = reading.story.frames.get(fact.step as usize);
+    frame.is_some_and(|frame| {
+        frame.act() == Some(Act::Follow) && frame.form == Form::Past && !frame.state && frame.happened()
+    })
+}
+
+/// Whether the words put the second of two frames behind the first, or let it answer that; of the second also whether something happened with
+/// a verb for who drives on, which is so in the sentence of the first alone.
+fn comes_behind(reading: &Reading<'_>, first: usize, (second, goes): (usize, bool)) -> bool {
     let frames = &reading.story.frames;
     let (Some(one), Some(two)) = (frames.get(first), frames.get(second)) else { return false };
+    let goes = goes && one.sentence == two.sentence;
+    let happens = |frame: &Frame| happens(reading, frame) || goes && std::ptr::eq(frame, two);
     let unclear = |frame: &Frame| frame.aside || frame.described || frame.looks_back;
     // What is told of before the crash behind its headline is no sequel of that.
     let back = |frame: &Frame| reading.back.contains(&frame.sentence);
@@ -40,7 +53,7 @@ fn comes_behind(reading: &Reading<'_>, first: usize, second: usize) -> bool {
     let stood = one.act() == Some(Act::Hold) && one.happened();
     if stood || had(reading, one) {
         let inner = two.joint.filter(is_inner).is_some();
-        return first < second && !inner && (stood || happens(reading, one)) && happens(reading, two);
+        return first < second && !inner && (stood || happens(one)) && happens(two);
     }
     match (one.sentence == two.sentence, one.joint.filter(is_inner), two.joint.filter(is_inner)) {
         // "As the van backed, the AV stopped", "the AV stopped as the van backed": it answered what the clause tells first. "It stopped
@@ -48,22 +61,20 @@ fn comes_behind(reading: &Reading<'_>, first: usize, second: usize) -> bool {
         (true, Some(Joint::While | Joint::After), None) => {
             let behind =
                 || ends(frames, first) && !begins_with_when(reading, second, first) && !is_sequel(reading, two);
-            happens(reading, two) && opens(reading, first) && (first < second || behind())
+            happens(two) && opens(reading, first) && (first < second || behind())
         }
         // "It was turning when the van pulled out": what went on had begun.
         // "It began to pass when the van pulled out".
         (true, None, Some(Joint::While)) => {
             let begun = || begins(reading, one) && begins_with_when(reading, first, second);
-            first < second && (goes_on(reading, one) || begun()) && happens(reading, two)
+            first < second && (goes_on(reading, one) || begun()) && happens(two)
         }
         // "It stopped before the van turned".
-        (true, None, Some(Joint::Before)) => happens(reading, one) && happens(reading, two),
+        (true, None, Some(Joint::Before)) => happens(one) && happens(two),
         (true, Some(_), _) | (true, _, Some(_)) => false,
-        (true, None, None) => first < second && happens(reading, one) && happens(reading, two),
+        (true, None, None) => first < second && happens(one) && happens(two),
         // One sentence after the other tells one thing after the other.
-        (false, inner, _) => {
-            first < second && inner != Some(Joint::Before) && happens(reading, one) && happens(reading, two)
-        }
+        (false, inner, _) => first < second && inner != Some(Joint::Before) && happens(one) && happens(two),
     }
 }
 

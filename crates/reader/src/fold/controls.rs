@@ -4,6 +4,7 @@ use super::Reading;
 use super::undone::not_done;
 use crate::frame::Frame;
 use crate::lexicon::{Form, Lexicon, Meaning, Relation, Sense};
+use crate::token::Token;
 use crate::world::{Actor, SUBJECT};
 use recrash_model::account::{Act, Control, ControlDevice, Fact, Obeyed, SignalState};
 
@@ -54,6 +55,7 @@ pub(super) fn controls(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<Control>
                 || (1..4).any(|back| before(back) == "have" && before(back + 1) == "not");
             // "hit it at a red light", and not "hit it on a red light".
             let there = !struck || (1..4).any(|back| before(back) == "at");
+            let none = none || actor == SUBJECT && is_of_side_street(&tokens[first..at]);
             if none && !frame.negated || !there || is_lamp(reading, (at, length)) {
                 continue;
             }
@@ -121,6 +123,17 @@ pub(super) fn is_lamp(reading: &Reading<'_>, (at, length): (usize, usize)) -> bo
     let with = (1..5).any(|back| back < at && word(at - back) == "with" && vehicle(at - back - 1));
     let broken = at > 0 && matches!(word(at - 1), "broken" | "faulty" | "defective");
     word(at) == "stop" && matches!(word(at + 1), "light" | "signal") && (of || with || broken)
+}
+
+/// "where only the side street has" stop signs: none on the way of who has the right of way there. Of the words before a sign.
+fn is_of_side_street(before: &[Token]) -> bool {
+    let within = &before[before.len().saturating_sub(6)..];
+    within.windows(3).any(|words| {
+        let [one, two, three] = [0, 1, 2].map(|at| words[at].text.as_str());
+        matches!(one, "side" | "cross" | "minor" | "intersecting")
+            && matches!(two, "street" | "road" | "traffic")
+            && matches!(three, "has" | "had" | "have" | "faces" | "faced")
+    })
 }
 
 /// "slowed for a red light but did not stop and entered the intersection": what it does behind this frame.

@@ -39,11 +39,21 @@ fn at_impact(tokens: &[Token], (first, end): (usize, usize), at: usize) -> bool 
     !earlier && (before() || behind())
 }
 
+/// "struck it while traveling", "the AV, which was traveling", "collided, with the AV going": at once with what stands before.
+fn is_meanwhile(tokens: &[Token], frame: &Frame) -> bool {
+    let word = |back: usize| frame.first.checked_sub(back).map_or("", |at| tokens[at].text.as_str());
+    let ending = || (2..=NAME + 2).any(|back| word(back) == "with" && word(back + 1) == ",");
+    let which = word(1) == "which" || word(2) == "which" && matches!(word(1), "was" | "were");
+    word(1) == "while" || which || ending()
+}
+
 /// "was doing 2 mph when it struck the van", "struck it while traveling at 5 mph": nothing else happened in between.
 fn is_until_contact(reading: &Reading<'_>, number: usize, at: usize) -> bool {
     let (frames, tokens) = (&reading.story.frames, &reading.story.tokens);
     let frame = &frames[number];
-    let goes = frame.form == Form::Ing && frame.act() == Some(Act::Follow);
+    // "was still moving" is one verb.
+    let going = || frame.end > frame.first && tokens[frame.end - 1].text.ends_with("ing");
+    let goes = frame.act() == Some(Act::Follow) && (frame.form == Form::Ing || going());
     let here = |other: &Frame| other.sentence == frame.sentence;
     let touches = |other: &&Frame| here(other) && other.is_contact();
     let behind = frames[number + 1..].iter().take_while(|other| here(other)).find(touches);
@@ -57,9 +67,8 @@ fn is_until_contact(reading: &Reading<'_>, number: usize, at: usize) -> bool {
         .iter()
         .rev()
         .take_while(|other| here(other))
-        .find(|other| other.act().is_some() || other.is_contact());
-    let while_so = frame.first > 0 && tokens[frame.first - 1].text == "while";
-    goes && while_so && before.is_some_and(Frame::is_contact)
+        .find(|other| other.first != frame.first && (other.act().is_some() || other.is_contact()));
+    goes && is_meanwhile(tokens, frame) && before.is_some_and(Frame::is_contact)
 }
 
 /// "The AV was traveling at 4 mph", right behind the sentence of a contact, and nothing else: how fast it was then. With such a sentence
@@ -220,15 +229,13 @@ pub(super) fn speeds(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<Speed>> {
         let named = owner_at(reading, sentence.first, at);
         let named = named.map(|owner| (owner, reading.story.frames.iter().any(touches)));
         let owner = owner_of_speed(reading, sentence.first, at).or(named);
-        let impact = owner.is_some_and(|(_, impact)| impact)
-            || at_impact(tokens, (sentence.first, sentence.end), at)
-            || is_until_contact(reading, number, at)
-            || is_of_last_contact(reading, frame.sentence);
+        let then = owner.is_some_and(|(_, impact)| impact) || at_impact(tokens, (sentence.first, sentence.end), at);
+        let impact = then || is_until_contact(reading, number, at) || is_of_last_contact(reading, frame.sentence);
         let in_time = impact || !reading.is_after(number);
         let who = owner.map(|(owner, _)| owner).or(frame.who);
-        // "The speed of the AV when struck was 8 mph": told with no verb of its own.
+        // "The speed of the AV when struck was 8 mph", "at the moment of contact": told with no verb of its own.
         let told_here = reading.story.sentences[frame.sentence].first == sentence.first;
-        if who != Some(actor) || !(told_here || owner.is_some_and(|(_, impact)| impact)) || !in_time {
+        if who != Some(actor) || !(told_here || owner.is_some() && then) || !in_time {
             continue;
         }
         let near: Vec<&str> =

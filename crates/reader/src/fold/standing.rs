@@ -13,7 +13,7 @@ use crate::frame::Frame;
 use crate::lexicon::{COMPANY, Form, Lexicon, Meaning, Part, Progress, Relation, Sense};
 use crate::token::Token;
 use crate::world::{Actor, SUBJECT};
-use recrash_model::account::{Act, ContactState, Fact, Kind, KindGroup, SignalState, StandReason, Standing};
+use recrash_model::account::{Act, ContactState, Fact, Kind, KindGroup, SignalState, Source, StandReason, Standing};
 
 /// That somebody begins to be in a junction or a lane.
 const ENTERS: [&str; 3] = ["beginning to enter", "began to enter", "begins to enter"];
@@ -388,8 +388,24 @@ pub(super) fn reasons(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<StandReas
         }
     }
     all.sort_by_key(|reason| rank(reason.value));
-    all.truncate(2);
-    all
+    let mut kept: Vec<Fact<StandReason>> = Vec::new();
+    for reason in all {
+        if !kept.iter().any(|other| is_within(&reason.source, &other.source)) {
+            kept.push(reason);
+        }
+    }
+    kept.truncate(2);
+    kept
+}
+
+/// "let" of "to let out a passenger": words within those of another reason say nothing more.
+fn is_within(words: &Source, others: &Source) -> bool {
+    match (words, others) {
+        (Source::Words { start, end, .. }, Source::Words { start: from, end: until, .. }) => {
+            start >= from && end <= until && end - start < until - from
+        }
+        _ => false,
+    }
 }
 
 /// "stopped because cars ahead had stopped", "so a woman could cross": why, told in the clause behind.

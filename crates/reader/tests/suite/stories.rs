@@ -356,3 +356,18 @@ fn damage_to_one_side_says_no_more_than_that_against_the_other_corner_of_the_col
     assert_eq!(zones("the left rear door"), "left");
     assert_eq!(zones("the left fender"), "front_left");
 }
+
+/// "As the AV turned, a van proceeded into the intersection": behind that, though the verb is one for who drives on; not in another sentence.
+#[test]
+fn who_proceeds_as_the_other_one_turns_does_so_behind_that() {
+    let text = "As the AV began the left turn, a sedan that was stopped at the stop sign to the left proceeded straight into the intersection, and the front of the \
+                sedan made contact with the left side of the AV.";
+    let after = |text: &str| {
+        let acts = account_of(text).expect("an account").partner.expect("a partner").acts;
+        acts.iter().find(|fact| fact.act == Act::Enter).expect("it entered").after_other
+    };
+    assert!(after(text).is_some());
+    let apart = "The AV began a left turn. A sedan to the left proceeded straight into the intersection, and the front of the sedan made contact with the left side of \
+                 the AV.";
+    assert!(after(apart).is_none());
+}

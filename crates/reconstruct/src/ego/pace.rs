@@ -182,8 +182,8 @@ fn from_line(told: &Told, ground: &Ground, sv_s_m: f64) -> Option<Pace> {
             let at_sign = said.device == ControlDevice::StopSign && !yet_to_stop;
             sv.state == ContactState::SettingOff || sv.stood_first || at_sign
         }
-        // Who sets off and comes into the junction did so from before it.
-        None => sv.stood_first || sv.state == ContactState::SettingOff && told.enters(),
+        // Who sets off and comes into the junction did so from before it; so did who stood where all do.
+        None => sv.stood_first || sv.state == ContactState::SettingOff && (told.enters() || told.all_way),
     };
     let stops = stops && matches!(sv.state, ContactState::SettingOff | ContactState::Moving);
     let driven_m = past_line_m(told, ground, sv_s_m).filter(|_| stops)?;

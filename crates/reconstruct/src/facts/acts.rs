@@ -41,6 +41,14 @@ const BEGUN_PASS_M: f64 = 0.5;
 const BEFORE_OTHER: usize = 5;
 const JUST_BEFORE_OTHER: usize = 2;
 
+/// An ego that stopped behind something that the other one did began to brake no earlier than so long before it may; it brakes while it loses so much a
+/// step. [steps, m/s]
+const ANSWERS_EARLY: usize = 10;
+const SLOWER_MPS: f64 = 0.02;
+
+/// Who passes the other one comes near it so long before it is beside it. [steps]
+const NEARS: usize = 25;
+
 /// Who is told to have stayed in its lane may be over its edge by so much. [m]
 const OVER_EDGE_M: f64 = 0.3;
 
@@ -67,8 +75,9 @@ const SOON_SHARE: f64 = 0.04;
 /// Who did one thing after another may have begun the second so much earlier. [steps]
 const OVERLAP: usize = 5;
 
-/// One of the two: what is told of it, its way, and the first step at which its front is in the junction.
+/// One of the two: what is told of it, its way, the first step at which its front is in the junction, and whether it is the ego.
 pub(super) struct Did<'a> {
+    pub(crate) is_ego: bool,
     pub(crate) told: &'a [Doing],
     pub(crate) track: &'a ActorTrack,
     pub(crate) entered: Option<usize>,
@@ -85,18 +94,31 @@ impl Did<'_> {
         });
         let until = until(self.track);
         let room_m = 0.5 * (LANE_M - self.track.width_m) + OVER_EDGE_M;
-        Way { states: &self.track.states[..=until], other: by, entered: self.entered.filter(|at| *at <= until), room_m }
+        let entered = self.entered.filter(|at| *at <= until);
+        Way { is_ego: self.is_ego, states: &self.track.states[..=until], other: by, entered, room_m }
     }
 }
 
 /// Whether everything that is told of somebody is seen, in order, and behind what the other one had done by the words; and what is.
 pub(super) fn check(one: &Did<'_>, other: Option<&Did<'_>>, time_s: f64) -> (CheckResult, String) {
     let (told, way) = (one.told, one.way(other, time_s));
-    let others: Vec<(u32, usize)> = other.map_or(Vec::new(), |other| {
+    let others: Vec<Bound> = other.map_or(Vec::new(), |other| {
         let seen = other.way(Some(one), time_s).times(other.told, &[]);
-        // Passing goes on while the other one does something.
-        let bounds = other.told.iter().zip(seen).filter(|(doing, _)| !doing.is_pass());
-        bounds.filter_map(|(doing, at)| Some((doing.step, at? + doing.found_early()))).collect()
+        // Passing goes on while the other one does something: that one has come near by then.
+        let since = |doing: &Doing, at: usize| match doing.is_pass() {
+            true => at.saturating_sub(NEARS),
+            false => at + doing.found_early(),
+        };
+        let bounds = other.told.iter().zip(seen);
+        bounds
+            .filter_map(|(doing, at)| {
+                Some(Bound {
+                    step: doing.step,
+                    at: since(doing, at?),
+                    moves: doing.is_aside() || doing.act == Act::Reverse,
+                })
+            })
+            .collect()
     });
     let (alone, in_order) = (way.times(told, &[]), way.times(told, &others));
     let of = |wanted: fn(Option<usize>, Option<usize>) -> bool| -> Vec<Doing> {
@@ -111,8 +133,16 @@ pub(super) fn check(one: &Did<'_>, other: Option<&Did<'_>>, time_s: f64) -> (Che
     }
 }
 
+/// An act of the other one, by its place in the order: when it was seen, and whether that one backed, or left its line by it.
+struct Bound {
+    step: u32,
+    at: usize,
+    moves: bool,
+}
+
 /// The states of somebody until the contact, those of the other one, when its front was in the junction, and the room in its lane.
 struct Way<'a> {
+    is_ego: bool,
     states: &'a [ActorState],
     other: Option<Other<'a>>,
     entered: Option<usize>,
@@ -135,18 +165,23 @@ impl Way<'_> {
 
     /// When each of the told acts begins, one after the other; none of them before the other one's behind which it is told, whose times
     /// these are.
-    fn times(&self, told: &[Doing], others: &[(u32, usize)]) -> Vec<Option<usize>> {
+    fn times(&self, told: &[Doing], others: &[Bound]) -> Vec<Option<usize>> {
         // Who goes aside or turns may have entered before.
         let (mut from, mut since) = (0, 0);
         let begins = |doing: &Doing| {
             // Who stands may have stood before.
             let bound = doing.after_other.filter(|_| doing.act != Act::Hold);
             // Behind what cannot be seen it is behind the last that can be before that.
-            let behind = others.iter().filter(|(step, _)| bound.is_some_and(|bound| *step <= bound));
-            let behind = behind.max_by_key(|(step, _)| *step);
-            let least = behind.map_or(0, |(_, at)| at.saturating_sub(doing.before_other()));
+            let behind = others.iter().filter(|other| bound.is_some_and(|bound| other.step <= bound));
+            let behind = behind.max_by_key(|other| other.step);
+            let least = behind.map_or(0, |other| other.at.saturating_sub(doing.before_other()));
             let earliest = if doing.is_entry() { since } else { from };
             let at = self.begins(*doing, earliest.max(least))?;
+            // An ego that stopped behind that the other one backed, or left its line, did not brake long before that.
+            let answers = self.is_ego && doing.comes_to_stand() && behind.is_some_and(|other| other.moves);
+            if answers && self.brakes(at) + ANSWERS_EARLY < least {
+                return None;
+            }
             // What was under way then had begun before; who goes aside may go on to.
             if at == least && from < least && !doing.goes_aside() && self.begins(*doing, from) != Some(at) {
                 return None;
@@ -159,6 +194,15 @@ impl Way<'_> {
             Some(at)
         };
         told.iter().map(begins).collect()
+    }
+
+    /// When who comes to a stand then began to brake for it.
+    fn brakes(&self, at: usize) -> usize {
+        (1..=at)
+            .rev()
+            .take_while(|at| self.speed(at - 1).abs() > self.speed(*at).abs() + SLOWER_MPS)
+            .last()
+            .map_or(at, |at| at - 1)
     }
 
     fn is_still(&self, at: usize) -> bool {

@@ -19,9 +19,10 @@ use crate::told::phase;
 use crate::told::rig::Rig;
 use crate::told::side::Side;
 use crate::touch::opening::{self, DOOR_M};
+use crate::usual::STANDS_MPS;
 use recrash_metrics::contact::{ContactGeometry, contact_geometry};
 use recrash_model::account::{
-    Astride, Control as Said, ControlDevice, Kind, LaneWord, Obeyed, Origin, StandReason, Striker,
+    Astride, ContactState, Control as Said, ControlDevice, Kind, LaneWord, Obeyed, Origin, StandReason, Striker,
 };
 use recrash_model::geometry::OrientedBox;
 use recrash_model::metrics::{Check, CheckKind, CheckResult};
@@ -196,8 +197,12 @@ impl<'a> Crash<'a> {
 
     fn state(&self, kind: CheckKind, side: &Side, track: &ActorTrack, seen: &ActorState) -> Check {
         let (told, time_s) = (self.told, self.touch.time_s);
-        // Who is pushed moves when it touches.
+        // Who is pushed moves when it touches; who was parked stood until then.
         let pushed = kind == CheckKind::CpState && told.pushed && told.thing.is_none();
+        let stands = |state: &ActorState| state.velocity().length() < STANDS_MPS;
+        let parked =
+            side.state != ContactState::Parked || until_touched(self.rollout, track, time_s).iter().all(stands);
+        let pushed = pushed && parked;
         let stood = stood(track, time_s);
         let (slowed, gained) = changed(track, time_s);
         let (as_told, phases) = phases::check(phase::checked(&side.phases), track, time_s);
@@ -309,9 +314,10 @@ impl<'a> Crash<'a> {
         let junction = enters.then(|| Junction::of(self.scenario)).flatten();
         // Where no junction is drawn nobody has entered one.
         let entered = |track| junction.as_ref().and_then(|inner| inner.entered(track));
-        let did = |told, track: Option<_>| track.map(|track| Did { told, track, entered: entered(track) });
-        let sv = did(self.told.sv.acts.as_slice(), Some(self.ego_track));
-        let cp = did(self.told.cp.acts.as_slice(), self.partner_track);
+        let did =
+            |is_ego, told, track: Option<_>| track.map(|track| Did { is_ego, told, track, entered: entered(track) });
+        let sv = did(true, self.told.sv.acts.as_slice(), Some(self.ego_track));
+        let cp = did(false, self.told.cp.acts.as_slice(), self.partner_track);
         let both = [(CheckKind::SvActs, &sv, &cp), (CheckKind::CpActs, &cp, &sv)];
         let seen = both.map(|(kind, one, other)| {
             let one = one.as_ref().filter(|one| !one.told.is_empty())?;

@@ -18,10 +18,12 @@ use recrash_model::template::Movement;
 pub(crate) fn ground_for(told: &Told) -> Ground {
     let crossing = matches!(told.origin, Origin::Cross { .. }) && !told.crosses_street() && !told.backs_across()
         || told.sv.turning != Turning::No && told.sv.turning != Turning::Round
-        || told.cp.turning != Turning::No;
+        || told.cp.turning != Turning::No && !told.turns_round_in_street();
     // Aisles cross where somebody turns.
+    let turns = |turning: Turning| matches!(turning, Turning::Left | Turning::Right);
     let lot = matches!(told.place, PlaceKind::ParkingLot | PlaceKind::Garage | PlaceKind::Driveway | PlaceKind::Alley)
-        && !matches!(told.sv.turning, Turning::Left | Turning::Right);
+        && !turns(told.sv.turning)
+        && !(turns(told.cp.turning) && matches!(told.origin, Origin::Cross { .. }) && told.comes_along_lanes());
     let controlled = told.is_controlled() && told.place != PlaceKind::Highway;
     // Who gives way to crossing traffic, or keeps a junction clear, is at one.
     let at_one = [Role::Crosser, Role::Blocker, Role::Beyond].into_iter().any(|role| has(told, role));
@@ -100,6 +102,12 @@ fn beside_edge(told: &Told, side: LeftRight, lot: bool, oncoming: usize) -> (Vec
 }
 
 impl Told {
+    /// Whether the partner turns round on a street along which both go, or out of its kerb: it needs no road that crosses.
+    fn turns_round_in_street(&self) -> bool {
+        let crosses = matches!(self.origin, Origin::Cross { .. } | Origin::Opposite);
+        self.cp.turning == Turning::Round && self.place == PlaceKind::Street && !crosses
+    }
+
     /// Whether the partner crosses a street on foot, as an animal, or as a rider that does what walkers do, where no road crosses it.
     fn crosses_street(&self) -> bool {
         let rides = matches!(self.cp.kind, PartnerKind::Cyclist | PartnerKind::OtherNonMotorist);

@@ -78,6 +78,11 @@ pub(super) fn keeps_lane(told: &Told, staging: &Staging, pace: &Pace, arm_m: f64
         }
         false => usual_m,
     };
+    let early = told.slows_for_who_came_over() || told.stops_for_who_comes_over();
+    let halfway = early.then(|| goes_over_halfway(staging, pace, arm_m, (line_y_m, ego_brakes_s() - BEGUN_S)));
+    if let Some(way) = halfway.flatten() {
+        return Some(way);
+    }
     let leaves = Pose { position: Vec2::new(cp.position.x - came.x * over_m, line_y_m), heading: staging.cp_came };
     let mut course = Course::begin(arm_m);
     let before_m = if course.curve(leaves, cp, false) { pace.driven_m - course.length_m() } else { return None };
@@ -102,6 +107,26 @@ fn over_before(
     let brakes_s = first_time(&ego_paces(told, &staging.ground, staging.sv_s_m).1.acts);
     let since_m = told.cp.speed_mps * (told.contact_s - brakes_s);
     between_lines(staging, pace, arm_m, [(since_m + over_m, line_y_m), (since_m, staging.cp.position.y)])
+}
+
+/// Who comes over by a part first has half of that before it on so long a way at least, where it goes aside by so much at least. [m, m]
+const HALF_OVER_M: f64 = 12.0;
+const LEAST_OVER_M: f64 = 0.8;
+
+/// Who came over when the ego braked goes aside by half first, from then on, and by the rest where it touches: in one bend that ends askew all of it
+/// would come late. Of the line that it leaves where that is, and when it begins to. [m, s]
+fn goes_over_halfway(
+    staging: &Staging,
+    pace: &Pace,
+    arm_m: f64,
+    (line_y_m, from_s): (f64, f64),
+) -> Option<(Pose, Vec<Pose>)> {
+    let (cp, aside_m) = (staging.cp, staging.cp.position.y - line_y_m);
+    let turn = math::wrap_angle(cp.heading - staging.cp_came).abs().max(AWAY_RAD);
+    let rest_m = (0.5 * UNBENT * aside_m.abs() / turn).max(HALF_OVER_M);
+    let begun_m = (pace.driven_m - pace.speed_mps * from_s.max(0.0)).min(pace.driven_m - KEPT_M);
+    let fits = aside_m.abs() > LEAST_OVER_M && begun_m > rest_m + HALF_OVER_M;
+    fits.then(|| between_lines(staging, pace, arm_m, [(begun_m, line_y_m), (rest_m, line_y_m + 0.5 * aside_m)]))?
 }
 
 /// Who passes has come out of the ego's lane so far before the contact, and does so on so much of its way at most. [m]

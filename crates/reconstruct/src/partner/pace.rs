@@ -34,7 +34,12 @@ pub(super) fn partner_paces(told: &Told, staging: &Staging) -> (Option<Lead>, Pa
     let ego_backs_s = ego_lead.as_ref().and_then(|lead| lead.backs_s).or(backs_last.then(|| first_time(&ego.acts)));
     let ego_moves_s = ego_lead.as_ref().and_then(Lead::sets_off_s).unwrap_or_else(|| first_time(&ego.acts));
     let ego_backs_s = ego_backs_s.filter(|_| told.backs_first == Some(Striker::Cp));
-    let before_s = if told.backs_early { Some(ego_moves_s) } else { ego_backs_s };
+    let ego_brakes_s = ego_lead.as_ref().filter(|lead| lead.speed_mps > 0.0).map(|lead| first_time(&lead.acts));
+    let before_s = match (told.backs_early, ego_brakes_s.filter(|_| told.backs_as_it_comes)) {
+        (_, Some(brakes_s)) => Some(brakes_s),
+        (true, None) => Some(ego_moves_s),
+        (false, None) => ego_backs_s,
+    };
     let last = thing_pace(told)
         .or_else(|| beside_from_line(told, staging))
         .or_else(|| cross_from_line(told, staging))
@@ -206,12 +211,12 @@ fn beside_from_line(told: &Told, staging: &Staging) -> Option<Pace> {
     start_over(told.contact_s, cp.speed_mps, ground.beside(staging.cp.position).0 - line_m)
 }
 
-/// Who stood at a signal or a sign on the crossing road, or has come into the junction since, sets off from its stop line.
+/// Who stood at a signal or a sign on the crossing road, or where all stop, or has come into the junction since, sets off from its stop line.
 fn cross_from_line(told: &Told, staging: &Staging) -> Option<Pace> {
     let (cp, ground) = (&told.cp, &staging.ground);
     let Origin::Cross { side } = told.origin else { return None };
     let stood = cp.stood_first || cp.state == ContactState::SettingOff;
-    let at_line = cp.control.is_some() || cp.enters();
+    let at_line = cp.control.is_some() || cp.enters() || told.all_way;
     if !stood || !at_line || !ground.junction || cp.state == ContactState::Reversing {
         return None;
     }

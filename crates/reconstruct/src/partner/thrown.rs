@@ -316,7 +316,7 @@ fn thrown_paces(told: &Told, staging: &Staging) -> Thrown {
     let ego_mps = if told.sv.state.stands() { 0.0 } else { told.sv.speed_mps };
     let push_mps = push_mps(told, ego_mps + rolls_mps);
     let rolling = |acts: Vec<Act>, driven_m: f64| Pace { speed_mps: ROLLING_MPS, acts, driven_m };
-    let (pace, pusher_mps) = if told.sv.state == ContactState::Parked {
+    let (pace, pusher_mps) = if told.sv.state == ContactState::Parked || cp.state == ContactState::Parked {
         (STANDING, push_mps)
     } else if let Some(pace) = as_the_ego(told, staging).filter(|_| ego_mps > 0.0) {
         (pace, ego_mps + push_mps)

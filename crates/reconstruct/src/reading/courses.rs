@@ -161,6 +161,16 @@ impl Told {
         }
     }
 
+    /// An ego that stands ahead of one that is parked, which another pushes into it, stood there when the story begins: no way leads there past that.
+    pub(super) fn stands_before_parked(&mut self) {
+        let parked = self.cp.state == ContactState::Parked && self.cp.state_told && self.is_thrown();
+        if parked && self.sv.state == ContactState::Stopped && !self.sv.phases.contains(&Phase::Drives) {
+            self.sv.state = ContactState::Parked;
+            self.sv.acts.clear();
+            self.sv.phases.clear();
+        }
+    }
+
     /// Whether the partner has changed lanes behind the ego, and that slowed or stopped then: it comes straight on since.
     fn changed_lanes_behind(&self) -> bool {
         let merges = matches!(self.cp.movement, Some(Movement::ChangingLanes | Movement::Merging));

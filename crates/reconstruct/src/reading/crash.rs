@@ -1,6 +1,8 @@
 //! An account, read whole: everything that is told of the crash, and what has to be assumed.
 
-use crate::reading::order::{backs_behind, backs_first, slows_behind, stood_before, turns_green_late};
+use crate::reading::order::{
+    backs_behind, backs_first, backs_on_arrival, slows_behind, stood_before, turns_green_late,
+};
 use crate::reading::origin::{self, assumed_origin};
 use crate::reading::side::side;
 use crate::reading::things::{self, POST};
@@ -182,6 +184,7 @@ impl Told {
             gives_way_to_merge: false,
             backs_late,
             backs_early,
+            backs_as_it_comes: backs_on_arrival(&account.sv, partner, origin),
             // Of two that back the partner can have begun to before.
             backs_first: backs_first(&account.sv, partner).filter(|first| !sv_reverses || *first == Striker::Cp),
             queued: false,
@@ -193,6 +196,7 @@ impl Told {
             choices: Choices::default(),
             assumed,
         };
+        this.stands_before_parked();
         this.queued = this.was_in_queue(account, partner);
         this.back_straight = this.cp_drives_over();
         this.courses(account, partner);

@@ -127,7 +127,12 @@ fn drives_abreast(account: &Account, partner: &Party) -> bool {
     let beside = account.came_from.as_ref().filter(|fact| matches!(fact.value, Origin::Beside { .. }));
     let passes = matches!(told(&partner.movement), Some(Movement::Passing)) || partner.did(Act::Pass);
     // A lane next to the ego's is no vehicle next to it.
-    let of_lane = |text: String| text.replace("lane next to", "lane").replace("lane beside", "lane");
+    // Nor is "alongside, a little behind its midpoint" behind it.
+    let of_lane = |text: String| {
+        let near = ["a little behind", "slightly behind", "just behind"].iter();
+        let text = text.replace("lane next to", "lane").replace("lane beside", "lane");
+        near.fold(text, |text, words| text.replace(words, ""))
+    };
     beside.map(|fact| of_lane(text(&fact.source))).is_some_and(|text| {
         let has = |words: &[&str]| words.iter().any(|word| text.contains(word));
         !passes && has(&ABREAST) && !has(&COMES_UP)

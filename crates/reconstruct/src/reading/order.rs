@@ -1,6 +1,6 @@
 //! What one of the two is told to have done before the other, or before its own last act.
 
-use recrash_model::account::{Act, ActFact, Origin, Party, SignalState, Source, Standing, Striker, told};
+use recrash_model::account::{Act, ActFact, Origin, Party, SignalState, Source, StandReason, Standing, Striker, told};
 
 /// Steps of the story in which somebody did such things before the contact.
 pub(super) fn steps(party: &Party, of: fn(Act) -> bool) -> Vec<u32> {
@@ -15,7 +15,8 @@ pub(super) fn backs_behind(sv: &Party, partner: &Party, origin: Origin) -> (bool
     let sets_off = steps(sv, |act| act == Act::SetOff).into_iter().max();
     let stops = first(sv, |act| matches!(act, Act::Stop | Act::Hold | Act::PullOver | Act::Park));
     let in_lane = matches!(origin, Origin::Ahead | Origin::Behind);
-    let early = in_lane && stops_for_who_backs(sv, partner)
+    let own = steps(sv, |act| act == Act::Reverse);
+    let early = in_lane && own.is_empty() && stops_for_who_backs(sv, partner)
         || sets_off.is_some_and(|at| at > backs)
         || stops.is_some_and(|at| at > backs);
     // Who backs behind what the ego did did so when that stood.
@@ -31,19 +32,32 @@ pub(super) fn slows_behind(sv: &Party, partner: &Party, origin: Origin) -> bool 
     origin == Origin::Ahead && backs.is_some() && backs < slows
 }
 
-/// Whether the ego stopped for one that was reversing then: "came to a stop for a van that was backing up".
-fn stops_for_who_backs(sv: &Party, partner: &Party) -> bool {
+/// Whether the ego stopped, or stood, for one that was reversing then: "came to a stop for a van that was backing up".
+pub(super) fn stops_for_who_backs(sv: &Party, partner: &Party) -> bool {
     let before = |fact: &&ActFact| !fact.after_contact && !fact.begun;
     let words = |fact: &ActFact| match &fact.source {
         Source::Words { start, end, text } => Some((*start, *end, text.to_lowercase())),
         _ => None,
     };
-    let backs = partner.acts.iter().filter(before).find(|fact| fact.act == Act::Reverse).and_then(words);
-    let stops = sv.acts.iter().filter(before).find(|fact| matches!(fact.act, Act::Stop | Act::Slow)).and_then(words);
-    let (Some((backs, _, text)), Some((_, stops, _))) = (backs, stops) else { return false };
+    let backs = partner.acts.iter().filter(before).find(|fact| fact.act == Act::Reverse);
+    // "Was stopped, yielding to a truck that was reversing".
+    let yields = sv.reasons.iter().any(|fact| fact.value == StandReason::Yield);
+    let stops = |fact: &&ActFact| matches!(fact.act, Act::Stop | Act::Slow) || yields && fact.act == Act::Hold;
+    let stops = sv.acts.iter().filter(before).find(stops);
+    // "Came to a stop behind a van. The van then began reversing."
+    let then = backs.zip(stops).is_some_and(|(backs, stops)| backs.after_other >= Some(stops.step));
+    let (backs, stops) = (backs.and_then(words), stops.and_then(words));
+    let (Some((backs, _, text)), Some((_, stops, _))) = (backs.filter(|_| !then), stops) else { return false };
     let goes_on = ["reversing", "backing", "rolling", "drifting"].iter().any(|verb| text.starts_with(verb));
-    let own = steps(sv, |act| act == Act::Reverse);
-    goes_on && own.is_empty() && (0..SAME_BREATH).contains(&(backs as i64 - stops as i64))
+    goes_on && (0..SAME_BREATH).contains(&(backs as i64 - stops as i64))
+}
+
+/// The same of one in the ego's lane or coming along it, where the ego backed then too.
+pub(super) fn backs_on_arrival(sv: &Party, partner: &Party, origin: Origin) -> bool {
+    let first = |party: &Party, of: fn(Act) -> bool| steps(party, of).into_iter().min();
+    let own = first(sv, |act| act == Act::Reverse);
+    let came = first(sv, |act| matches!(act, Act::Follow | Act::Slow | Act::Stop));
+    matches!(origin, Origin::Ahead | Origin::Behind) && own.is_some() && came < own && stops_for_who_backs(sv, partner)
 }
 
 /// What is told within so many bytes is told in one breath.

@@ -100,17 +100,23 @@ impl Told {
     }
 }
 
-/// How much longer the ego and the partner stand, and how fast the partner is, where that brings what they do into the told order. [s]
-const OTHER_TIMES: [([f64; 2], f64); 8] = [
-    ([-0.8, 0.0], 1.0),
-    ([2.0, 0.0], 1.0),
-    ([0.0, 2.0], 1.0),
-    ([-0.8, 0.0], 0.6),
-    ([4.0, 0.0], 1.0),
-    ([0.0, 4.0], 1.0),
-    ([7.0, 0.0], 1.0),
-    ([0.0, 7.0], 1.0),
+/// How much longer the ego and the partner stand, and in shares of what is usual how fast the partner is, and an ego that comes to a stop, where that
+/// brings what they do into the told order. [s, -]
+const OTHER_TIMES: [([f64; 2], [f64; 2]); 10] = [
+    ([-0.8, 0.0], [1.0, 1.0]),
+    ([2.0, 0.0], [1.0, 1.0]),
+    ([0.0, 2.0], [1.0, 1.0]),
+    ([-0.8, 0.0], [0.6, 1.0]),
+    ([-0.8, 0.0], [1.0, SLOWLY]),
+    ([-0.8, 0.0], [0.6, SLOWLY]),
+    ([4.0, 0.0], [1.0, 1.0]),
+    ([0.0, 4.0], [1.0, 1.0]),
+    ([7.0, 0.0], [1.0, 1.0]),
+    ([0.0, 7.0], [1.0, 1.0]),
 ];
+
+/// An ego that comes along more slowly brakes for a shorter time. [-]
+const SLOWLY: f64 = 0.6;
 
 impl Told {
     /// The same at other times, to try where what one of the two did before or behind the other is not shown as it is told: the ego's acts
@@ -119,10 +125,15 @@ impl Told {
     pub(super) fn in_other_times(&self) -> impl Iterator<Item = (Self, [bool; 2])> {
         let differs = self.sv.acts.iter().chain(&self.cp.acts).any(Doing::is_behind_other);
         let tried = OTHER_TIMES.into_iter().filter(move |_| differs);
-        tried.map(|(longer_s, slower)| {
+        tried.map(|(longer_s, [slower, rolling])| {
             let mut told = self.clone();
             told.contact_s += longer_s[0].max(longer_s[1]).max(0.0);
-            let choices = Choices { longer_s, partner_speed: slower * self.choices.partner_speed, ..self.choices };
+            let choices = Choices {
+                longer_s,
+                partner_speed: slower * self.choices.partner_speed,
+                rolling_mps: rolling * self.choices.rolling_mps,
+                ..self.choices
+            };
             (told.choosing(choices), [longer_s[0] <= 0.0, longer_s[0] > 0.0 || slower < 1.0])
         })
     }

@@ -57,7 +57,9 @@ impl Told {
             None => self.sv.movement?,
         };
         // Who makes room for another before it stops does so away from it.
-        let makes_room = matches!(stopped, Some(Act::Drift | Act::Swerve)) && self.striker == Some(Striker::Cp);
+        let pulls_aside = matches!(stopped, Some(Act::PullOver | Act::Park)) && self.origin == Origin::Opposite;
+        let makes_room =
+            pulls_aside || matches!(stopped, Some(Act::Drift | Act::Swerve)) && self.striker == Some(Striker::Cp);
         // Who stopped on its way to another lane, and is passed by who was behind it, had gone away from that one's side.
         let passed = self.cp.passes_on().filter(|_| stopped == Some(Act::LaneChange) && self.origin == Origin::Behind);
         let towards = self.sv.aside.or(passed.map(LeftRight::other)).or(match self.origin {

@@ -120,6 +120,8 @@ pub(crate) struct Told {
     pub(crate) backs_late: bool,
     /// The partner backs: it began to before the ego stopped, or moved up to where it stands.
     pub(crate) backs_early: bool,
+    /// The partner backed already as the ego came and stopped for it, before that backed too.
+    pub(crate) backs_as_it_comes: bool,
     /// Who of the two backed first, where both did.
     pub(crate) backs_first: Option<Striker>,
     /// The partner is told to have been behind an ego that stood and set off, and not to have come up to it.

@@ -118,11 +118,11 @@ impl Told {
         if neared && self.sv.phases.is_empty() {
             self.sv.slowed_from = self.sv.slowed_from.or(Some(Slowed(None)));
         }
-        let crosses = matches!(self.origin, Origin::Cross { .. });
+        let (crosses, all_way) = (matches!(self.origin, Origin::Cross { .. }), self.all_way);
         let usual = |side: &Side| match side.state {
             ContactState::Stopped | ContactState::Parked => 0.0,
             // It has come from its line.
-            ContactState::SettingOff if (side.control.is_some() || side.enters()) && crosses => 4.0,
+            ContactState::SettingOff if (side.control.is_some() || side.enters() || all_way) && crosses => 4.0,
             ContactState::SettingOff => 1.5,
             ContactState::Reversing => 1.2,
             ContactState::Moving if side.kind == PartnerKind::Pedestrian => WALKS_MPS,

@@ -216,7 +216,9 @@ fn from_the_kerb(told: &Told, side: Option<LeftRight>) -> Vec<Headings> {
     if told.comes_round {
         return aside.to_vec();
     }
-    let leaves = |from: f64| [10.0, 18.0, 28.0, 5.0, 40.0].map(|off| (0.0, -from * rad(off)));
+    let turns_round = told.cp.turning == Turning::Round;
+    let offs = if turns_round { [75.0, 90.0, 65.0, 110.0, 130.0] } else { [10.0, 18.0, 28.0, 5.0, 40.0] };
+    let leaves = |from: f64| offs.map(|off| (0.0, -from * rad(off)));
     let mut list: Vec<Headings> = from(told, side).into_iter().flat_map(leaves).collect();
     if told.cp.state == ContactState::Reversing {
         list.extend(aside);

@@ -31,6 +31,7 @@ mod queues;
 mod roads_left;
 mod roadside;
 mod sabotage;
+mod stands;
 mod steps;
 mod steps_between;
 mod stories;

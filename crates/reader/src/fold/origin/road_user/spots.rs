@@ -143,7 +143,14 @@ impl Case<'_> {
             let side = self.side_or_touched().or_else(|| side_named(self.reading, number))?;
             return told_as(Origin::Cross { side }, self.words_of(Act::PullOut));
         }
-        told_as(Origin::Parked { side: self.side_or_touched() }, self.words_of(Act::PullOut))
+        told_as(Origin::Parked { side: self.side_of_its_kerb() }, self.words_of(Act::PullOut))
+    }
+
+    /// On which side the kerb is at which it stood: "standing at the north curb", of who goes west, at its right.
+    fn side_of_its_kerb(&self) -> Option<LeftRight> {
+        let stands = |act: Option<Act>| matches!(act, Some(Act::Hold | Act::Park));
+        let way = self.account.sv.heading.as_ref().map(|fact| fact.value);
+        self.side.or_else(|| side_of_road_of(self.reading, self.actor, way, stands)).or(self.touched)
     }
 
     /// "a van parked on the north curb went backwards", of who goes west: out of the row at its right.
@@ -166,6 +173,9 @@ impl Case<'_> {
         let (_, frame) = self.frames().find(|(_, frame)| goes(frame))?;
         let (_, named) = self.reading.story.world.actors[self.actor].kind_tokens?;
         let sentence = self.reading.story.sentences[frame.sentence];
+        // A headline may have named it before: then from what is told of it first here.
+        let own = self.frames().find(|(_, own)| own.sentence == frame.sentence).map(|(_, own)| own.first);
+        let named = if named < sentence.first { own? } else { named };
         if self.behind_first() || !(sentence.first..=frame.first).contains(&named) {
             return None;
         }
@@ -180,6 +190,6 @@ impl Case<'_> {
         if others || drove || !curb {
             return None;
         }
-        told_as(Origin::Parked { side: self.side_or_touched() }, self.words_of(frame.act()?))
+        told_as(Origin::Parked { side: self.side_of_its_kerb() }, self.words_of(frame.act()?))
     }
 }
