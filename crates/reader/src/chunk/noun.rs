@@ -85,7 +85,7 @@ impl Chunker<'_> {
         }
         let mut draft = self.article(first);
         // "one of them": of those named before.
-        let those = matches!(self.text(draft.at - 1), "these" | "those");
+        let those = draft.one_of && matches!(self.text(draft.at - 1), "these" | "those");
         if draft.one_of && (self.text(draft.at) == "them" || those && self.text(draft.at) == ",") {
             draft.at -= usize::from(those);
             let noun = Noun { one_of: true, kind: Some(Kind::Vehicle), ..draft.noun };
