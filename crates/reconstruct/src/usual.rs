@@ -36,6 +36,10 @@ pub(crate) const SLIDES_MPS: f64 = 2.0;
 /// Usual speed on foot. [m/s]
 pub(crate) const WALKS_MPS: f64 = 1.4;
 
+/// Usual speed of who runs on foot; nobody is told to run who is slower than the second. [m/s]
+pub(crate) const RUNS_MPS: f64 = 3.0;
+pub(crate) const RUNS_LEAST_MPS: f64 = 2.0;
+
 /// Usual speed in a turn. [m/s]
 pub(crate) const TURNS_MPS: f64 = 5.0;
 

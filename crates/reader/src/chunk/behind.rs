@@ -159,8 +159,26 @@ impl Chunker<'_> {
         at
     }
 
+    /// Behind the words that tell who rides it: "an electric bicycle ridden by a food courier" is one.
+    fn rider_behind(&self, noun: &Noun, at: usize) -> Option<usize> {
+        let ridden = matches!(self.text(at), "ridden" | "operated" | "pedaled") && self.text(at + 1) == "by";
+        let two_wheels = |kind: Kind| {
+            matches!(kind.group(), KindGroup::Cyclist | KindGroup::Motorcycle)
+                || matches!(kind, Kind::ScooterRider | Kind::Skateboarder)
+        };
+        if !ridden || !noun.kind.is_some_and(two_wheels) {
+            return None;
+        }
+        let (rider, length) = self.noun(at + 2)?;
+        let rides = rider.kind.is_none_or(|kind| kind.group() == KindGroup::OnFoot || two_wheels(kind));
+        (rides && !rider.subject && rider.owner.is_none()).then_some(at + 2 + length)
+    }
+
     /// "a person on a scooter", "a rider of a bicycle" is who rides it.
     fn ride_behind(&self, noun: &mut Noun, at: usize) -> usize {
+        if let Some(behind) = self.rider_behind(noun, at) {
+            return behind;
+        }
         let on_foot = noun
             .kind
             .is_some_and(|kind| matches!(kind.group(), KindGroup::OnFoot | KindGroup::Cyclist | KindGroup::Motorcycle))
@@ -242,6 +260,28 @@ impl Chunker<'_> {
     fn owned_person(&self, at: usize) -> Option<(Noun, usize)> {
         let (noun, length) = self.noun(at).filter(|(noun, _)| noun.article == Article::None)?;
         (noun.occupant.is_some() && noun.owner.is_none()).then_some((noun, length))
+    }
+
+    /// "a row of traffic cones", "a set of barrels", "a flock of ducks": the things, the animals. A row of cars is a queue.
+    pub(super) fn row_of(&self, first: usize) -> Option<(Noun, usize)> {
+        const ROWS: [&str; 9] = ["row", "line", "set", "series", "string", "stack", "pile", "pair", "cluster"];
+        const HERDS: [&str; 6] = ["flock", "herd", "pack", "family", "group", "pair"];
+        let (rows, herds) = (ROWS.contains(&self.text(first + 1)), HERDS.contains(&self.text(first + 1)));
+        let row = matches!(self.text(first), "a" | "the") && (rows || herds);
+        if !row || self.text(first + 2) != "of" {
+            return None;
+        }
+        // "traffic cones".
+        let at = first + 3 + usize::from(self.text(first + 3) == "traffic");
+        let (noun, length) = self.noun(at)?;
+        let fits = noun.kind.is_some_and(|kind| match kind.group() {
+            KindGroup::Object => rows,
+            KindGroup::Animal => herds,
+            _ => false,
+        });
+        let article = if self.text(first) == "the" { Article::Definite } else { Article::Indefinite };
+        (fits && noun.article == Article::None)
+            .then_some((Noun { article, several: true, ..noun }, at + length - first))
     }
 
     /// Behind a wheel or a tire that is on no vehicle: "a wheel came off a truck", and "the wheel" further on.

@@ -83,6 +83,9 @@ impl Chunker<'_> {
         {
             return self.noun(first + 4).map(|(noun, length)| (noun, 4 + length));
         }
+        if let Some(row) = self.row_of(first) {
+            return Some(row);
+        }
         let mut draft = self.article(first);
         // "one of them": of those named before.
         let those = draft.one_of && matches!(self.text(draft.at - 1), "these" | "those");
@@ -115,7 +118,8 @@ impl Chunker<'_> {
             noun.adjectives.extend(before.adjectives.into_iter().filter(stands));
         }
         if one_of {
-            (noun.one_of, noun.several) = (noun.several, false);
+            // "one of the deer".
+            (noun.one_of, noun.several) = (noun.several || noun.kind == Some(Kind::Animal), false);
             noun.article = if noun.one_of { Article::Indefinite } else { Article::Definite };
         }
         Some((noun, length))

@@ -286,6 +286,9 @@ fn manner(reading: &Reading<'_>, number: usize) -> Option<Manner> {
     let speed = |at: usize, of: &[&str]| {
         of.contains(&word(at)) && (at + 1..end.min(at + 4)).any(|next| matches!(word(next), "speed" | "speeds"))
     };
+    if runs(reading, frame) {
+        return Some(Manner::Fast);
+    }
     let mut words = frame.first.saturating_sub(MANNER_BEFORE).max(sentence.first)..end.min(sentence.end);
     words.find_map(|at| match word(at) {
         // "touched the slowly moving van".
@@ -299,6 +302,23 @@ fn manner(reading: &Reading<'_>, number: usize) -> Option<Manner> {
         _ if at > frame.first && speed(at, &FAST) => Some(Manner::Fast),
         _ => None,
     })
+}
+
+/// "A pedestrian ran out from between two trucks", "who was jogging": on foot that is fast.
+fn runs(reading: &Reading<'_>, frame: &Frame) -> bool {
+    const RUNS: [&str; 10] = ["ran", "run", "running", "jog", "sprint", "dash", "dart", "rush", "bolt", "race"];
+    let tokens = &reading.story.tokens;
+    let Some(known) = frame.who.map(|who| &reading.story.world.actors[who]) else { return false };
+    let moves = matches!(frame.act(), Some(Act::Follow | Act::Enter | Act::Cross | Act::PullOut | Act::Swerve));
+    let word = tokens[frame.first..frame.end].iter().find(|token| !is_auxiliary(&token.text));
+    let runner = known.kind_tokens.is_some_and(|(_, end)| matches!(tokens[end - 1].text.as_str(), "jogger" | "runner"));
+    let runs = word.is_some_and(|token| RUNS.iter().any(|run| token.text.starts_with(run)));
+    known.kind == Some(Kind::Pedestrian) && moves && (runs || runner)
+}
+
+/// Words before a verb.
+fn is_auxiliary(word: &str) -> bool {
+    matches!(word, "was" | "were" | "is" | "had" | "has" | "been" | "then" | "suddenly" | "who" | "quickly")
 }
 
 /// How it was done stands right before a verb, or behind it. [tokens]

@@ -414,13 +414,18 @@ fn without_contact(record: &CrashRecord) -> CrashRecord {
     }
 }
 
-/// Who comes across from a sidewalk along which it went is in no lane of the road.
+/// Who comes across from a sidewalk along which it went is in no lane of the road; a rider along that of the crossing road comes over the
+/// crosswalk.
 fn along_the_sidewalk(account: &mut Account) {
     let along = matches!(
         told(&account.came_from),
         Some(Origin::Behind | Origin::Ahead | Origin::Beside { .. } | Origin::Opposite)
     );
-    if let Some(partner) = account.partner.as_mut().filter(|_| !along) {
+    let across = matches!(told(&account.came_from), Some(Origin::Cross { .. }));
+    let rides =
+        |kind: Kind| kind.group() == KindGroup::Cyclist || matches!(kind, Kind::ScooterRider | Kind::Skateboarder);
+    let rides = account.partner.as_ref().and_then(|partner| told(&partner.kind)).is_some_and(rides);
+    if let Some(partner) = account.partner.as_mut().filter(|_| !(along || across && rides)) {
         partner.lane = partner.lane.take().filter(|lane| lane.value != LaneWord::Sidewalk);
     }
 }

@@ -287,10 +287,12 @@ pub(super) fn is_nobody(reading: &Reading<'_>, (first, end): (usize, usize), act
     let adjective =
         is(Some(end), &["crosswalk", "crosswalks", "signal", "signals", "light", "lights", "control", "officer"])
             || inside(&["pedestrian"]) && (inside(&["traffic"]) || is(Some(end), &["traffic"]));
+    // "The wheel slipped on the cable car rails".
+    let rails = is(Some(end), &["rail", "rails", "track", "tracks"]);
     let capital = |at: usize| story.tokens.get(at).is_some_and(|token| token.capital);
     let street = end == first + 1 && capital(first) && capital(end) && first > 0;
     let involved = inside(&["involved"]) || is(Some(end), &["involved"]) || is(first.checked_sub(1), &["both"]);
-    if pickup || of_way || any_traffic || adjective || street || involved {
+    if pickup || of_way || any_traffic || adjective || rails || street || involved {
         return true;
     }
     if again || acts.iter().any(|fact| !fact.after_contact) {

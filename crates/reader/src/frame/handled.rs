@@ -3,7 +3,7 @@
 
 use super::parser::{Carry, Parser};
 use super::row::{Spoken, single};
-use crate::chunk::Chunk;
+use crate::chunk::{Chunk, Noun};
 use crate::lexicon::{Form, Occupant, Sense};
 use crate::token::Token;
 use crate::world::SUBJECT;
@@ -187,4 +187,46 @@ pub(super) fn is_of_an_alley(parser: &Parser<'_>, verb: &Spoken<'_>, _carry: &Ca
 /// Whether a comma or a verb of being stands right before a verb.
 fn carry_is_of(verb: &Spoken<'_>) -> bool {
     matches!(verb.chunk_before(), Some(Chunk::Comma | Chunk::Be | Chunk::Joint(_)))
+}
+
+/// "came up the hill, standing on the pedals", "a person on a scooter, standing, came up": who rides so does not stand still.
+pub(super) fn stands_as_it_rides(parser: &Parser<'_>, verb: &Spoken<'_>, carry: &Carry) -> Option<Sense> {
+    let subject = carry.subject.as_ref().filter(|_| verb.sense == Sense::Act(Act::Hold))?;
+    let rides = parser.world.actors[subject.actor].kind.is_some_and(|kind| {
+        matches!(kind.group(), KindGroup::Cyclist | KindGroup::Motorcycle)
+            || matches!(kind, Kind::ScooterRider | Kind::Skateboarder)
+    });
+    let placed = verb.placed();
+    let word = |at: usize| parser.tokens.get(at).map_or("", |token| token.text.as_str());
+    let upright = placed.end == placed.first + 1 && word(placed.first) == "standing";
+    let pedals = word(placed.end) == "on"
+        && (1..4).any(|on| matches!(word(placed.end + on), "pedals" | "pegs" | "footpegs" | "deck" | "board"));
+    let up = matches!(word(placed.end), "," | "up" | "upright") && placed.first > 0 && word(placed.first - 1) == ",";
+    (rides && upright && (pedals || up)).then_some(Sense::Other)
+}
+
+/// "a sign that leaned over the road": what is fixed goes nowhere.
+pub(super) fn leans(parser: &Parser<'_>, verb: &Spoken<'_>, carry: &Carry) -> Option<Sense> {
+    let subject = carry.subject.as_ref().filter(|_| verb.sense == Sense::Act(Act::Drift))?;
+    let fixed = matches!(
+        parser.world.actors[subject.actor].kind,
+        Some(Kind::Sign | Kind::Pole | Kind::Wall | Kind::TreeBranch | Kind::Barrier)
+    );
+    (fixed && verb.word(parser).starts_with("lean")).then_some(Sense::Other)
+}
+
+/// "went through a barricade", "drove through the fence": it ran into that.
+pub(super) fn goes_through_a_barrier(parser: &Parser<'_>, verb: &Spoken<'_>, _carry: &Carry) -> Option<Sense> {
+    let goes = matches!(verb.sense, Sense::Act(Act::Enter | Act::Follow));
+    let through = parser.tokens[verb.placed().end - 1].text == "through";
+    let bars = |noun: &Noun, end: usize| match noun.kind {
+        Some(Kind::Barrier | Kind::Chain) => true,
+        Some(Kind::Cone) => parser.tokens[end - 1].text.starts_with("barricade"),
+        _ => false,
+    };
+    let barrier = verb.all.get(verb.at + 1).is_some_and(|placed| match &placed.chunk {
+        Chunk::Noun(noun) => bars(noun, placed.end),
+        _ => false,
+    });
+    (goes && through && barrier).then_some(Sense::Contact)
 }

@@ -3,8 +3,9 @@
 //! A new rule goes into [`SENSES`]; each sees what the ones before it made of the verb.
 
 use super::handled::{
-    comes_along, does_not_fall, drops_into_a_hole, drops_riders_off, goes_over_the_bars, handles_a_thing, is_closed,
-    is_of_an_alley, launches_another, slides_to_a_stop, turns_in_its_seat, turns_out_to_be, turns_the_wheel,
+    comes_along, does_not_fall, drops_into_a_hole, drops_riders_off, goes_over_the_bars, goes_through_a_barrier,
+    handles_a_thing, is_closed, is_of_an_alley, launches_another, leans, slides_to_a_stop, stands_as_it_rides,
+    turns_in_its_seat, turns_out_to_be, turns_the_wheel,
 };
 use super::parser::{Carry, Parser};
 use super::row::{Spoken, single};
@@ -16,7 +17,7 @@ use recrash_model::account::{Act, Compass, Kind, KindGroup, LeftRight};
 
 type Rule = fn(&Parser<'_>, &Spoken<'_>, &Carry) -> Option<Sense>;
 
-const SENSES: [Rule; 53] = [
+const SENSES: [Rule; 56] = [
     lowers_a_part,
     goes_up_or_down,
     goes_down_a_hill,
@@ -32,6 +33,9 @@ const SENSES: [Rule; 53] = [
     does_not_move,
     sits_inside,
     is_ridden,
+    stands_as_it_rides,
+    leans,
+    goes_through_a_barrier,
     blows_another,
     nearly_stops,
     half_stops,

@@ -29,7 +29,8 @@ enum Meant {
 type Rule = fn(&mut World, &Sought<'_>) -> Option<Meant>;
 
 /// Who is meant by a noun with a kind: the first rule that says something counts.
-const RULES: [Rule; 17] = [
+const RULES: [Rule; 18] = [
+    World::one_of_a_herd,
     World::told_of_first,
     World::own_bus,
     World::own_shuttle,
@@ -256,6 +257,13 @@ impl World {
         let (only, more) = (all.next()?, all.next());
         let known = &self.actors[only];
         (more.is_none() && !known.several && !known.announced && sought.hint.is_none()).then_some(only)
+    }
+
+    /// "Two deer ran out of the brush. It struck one of the deer": what they did that one did.
+    fn one_of_a_herd(&mut self, sought: &Sought<'_>) -> Option<Meant> {
+        let herd = |known: &Known| known.several && sought.fits(known);
+        let one = sought.noun.one_of && sought.kind == Kind::Animal;
+        self.latest(herd).filter(|_| one).map(Meant::Known)
     }
 
     /// "Parked cars": a group, the one that was named or a new one. "The parked cars" are not "a line of cars behind it".

@@ -19,7 +19,7 @@ use crate::told::phase;
 use crate::told::rig::Rig;
 use crate::told::side::Side;
 use crate::touch::opening::{self, DOOR_M};
-use crate::usual::STANDS_MPS;
+use crate::usual::{RUNS_LEAST_MPS, STANDS_MPS};
 use recrash_metrics::contact::{ContactGeometry, contact_geometry};
 use recrash_model::account::{
     Astride, ContactState, Control as Said, ControlDevice, Kind, LaneWord, Obeyed, Origin, StandReason, Striker,
@@ -210,10 +210,12 @@ impl<'a> Crash<'a> {
         let backs_first = told.backs_first.filter(|_| kind == CheckKind::CpState && !told.sv.phases.is_empty());
         let in_order = backs_first.is_none_or(|first| phases::back_in_order(first, self.ego_track, track, time_s));
         let rolls_out = kind == CheckKind::CpState && told.rolls_out();
+        let runs = !side.runs() || seen.velocity().length() > RUNS_LEAST_MPS;
         let shown = pushed
             || !(rolls_out && stood)
                 && state(side.state, track, seen, time_s)
                 && stands_so
+                && runs
                 && (stood || !side.stood_first)
                 && (slowed || side.slowed_from.is_none())
                 && (gained || !side.gains)
@@ -230,6 +232,9 @@ impl<'a> Crash<'a> {
         }
         if rolls_out {
             expected += ", without a stop";
+        }
+        if side.runs() {
+            expected += ", running";
         }
         if side.phases.is_empty() {
             expected += before(side.stood_first, side.slowed_from.is_some(), side.gains);
@@ -409,7 +414,8 @@ impl<'a> Crash<'a> {
             let of_partner = kind == CheckKind::CpControl;
             let arm = signals::own_arm(self.told, self.scenario).filter(|_| of_partner);
             let at_red = self.told.keeps_red().filter(|_| !of_partner);
-            let asked = signals::Asked { said, arm, at_red };
+            let on_walk = of_partner && self.told.crosses_at_walk();
+            let asked = signals::Asked { said, arm, at_red, on_walk };
             let seen = signals::check(asked, self.scenario, track, self.touch.time_s);
             let beside = of_partner && signals::is_beside_road(self.told);
             Some(held(kind, signals::words(said), if beside { signals::beside_road(seen) } else { seen }))
@@ -424,7 +430,7 @@ impl<'a> Crash<'a> {
         }
         let controlled = |device: ControlDevice| {
             let said = Said { device, state: None, obeyed: Some(Obeyed::Yes) };
-            let asked = signals::Asked { said, arm: None, at_red: self.told.keeps_red() };
+            let asked = signals::Asked { said, arm: None, at_red: self.told.keeps_red(), on_walk: false };
             signals::check(asked, self.scenario, self.ego_track, self.touch.time_s).0 == CheckResult::Shown
         };
         let holds = |reason: &StandReason| match reason {

@@ -2,13 +2,14 @@
 
 use crate::facts::near::SLOWED_MPS;
 use crate::facts::signals;
+use crate::facts::things;
 use crate::others::stand::{stands, stood_behind};
 use crate::told::crash::Told;
 use crate::told::near::Near;
 use crate::told::others::{Extra, GIVEN_WAY, Role};
 use crate::told::queue::{leaves_lane, waits_ahead};
 use crate::told::side::Turning;
-use crate::usual::{LANE_M, STANDS_MPS};
+use crate::usual::{LANE_M, RUNS_LEAST_MPS, STANDS_MPS};
 use recrash_model::account::{ContactState, Kind, LeftRight, Origin, StandReason};
 use recrash_model::geometry::{OrientedBox, Pose, Vec2};
 use recrash_model::kinds::PartnerKind;
@@ -184,10 +185,12 @@ impl<'a> Seen<'a> {
         let Some(track) = self.find(extra) else { return false };
         let as_told = extra.kind.partner_kind().is_none_or(|kind| kind == track.kind);
         as_told
+            && self.loses(extra, track)
             && match extra.role {
                 Role::Lead | Role::Thing => self.leads(extra, track),
                 Role::Slower => self.slows_ahead(track),
                 Role::Walker if extra.stays => self.stays_close(track) && self.is_on_side(extra, track),
+                Role::Walker if extra.runs && !self.runs(track) => false,
                 Role::Walker | Role::Animal => self.crosses(extra, track, AHEAD_M) && self.is_on_side(extra, track),
                 Role::Crosser => self.crosses(extra, track, CROSSING_M) && self.is_on_side(extra, track),
                 Role::Oncoming => self.comes_by(extra, track),
@@ -205,6 +208,18 @@ impl<'a> Seen<'a> {
                 Role::Beyond => self.blocks(track, false),
                 Role::Near => extra.near.is_some_and(|near| near.holds(self.ego, track, self.until)),
             }
+    }
+
+    /// Whether what is told to have come off somebody does: "a ladder slid off the truck ahead of it".
+    fn loses(&self, extra: &Extra, track: &ActorTrack) -> bool {
+        let its = self.told.dropped.is_some_and(|number| extra.of.contains(&number));
+        let thing = self.rollout.actors.iter().find(|track| track.id == "cp").filter(|_| its);
+        !its || thing.is_some_and(|thing| things::comes_off(thing, track, self.until))
+    }
+
+    /// Whether somebody runs on its way.
+    fn runs(&self, track: &ActorTrack) -> bool {
+        (0..=self.until).any(|step| Self::mps(track, step) > RUNS_LEAST_MPS)
     }
 
     fn mps(track: &ActorTrack, step: usize) -> f64 {

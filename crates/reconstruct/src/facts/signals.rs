@@ -29,8 +29,9 @@ const ROLLS_MPS: f64 = 4.5;
 const SLOWED_BY_MPS: f64 = 1.0;
 const SLOWS_S: f64 = 3.0;
 
-/// A line is taken to be so much longer on both sides. [m]
+/// A line is taken to be so much longer on both sides; for who rides along the sidewalk, and comes over the crosswalk, as far as that goes. [m]
 const BESIDE_M: f64 = 1.5;
+const BESIDE_WALK_M: f64 = 4.0;
 
 /// A told signal or sign, for sentences.
 pub(super) fn words(said: Said) -> String {
@@ -79,12 +80,14 @@ pub(super) struct Asked<'a> {
     pub(super) said: Said,
     pub(super) arm: Option<&'a str>,
     pub(super) at_red: Option<AtRed>,
+    /// It comes along the sidewalk.
+    pub(super) on_walk: bool,
 }
 
 /// Whether a told signal or sign stood before somebody, showed what is told, and was obeyed or not as told. Who came to a stand for a
 /// light that changed did so before it was green.
 pub(super) fn check(
-    Asked { said, arm, at_red }: Asked<'_>,
+    Asked { said, arm, at_red, on_walk }: Asked<'_>,
     scenario: &Scenario,
     track: &ActorTrack,
     contact_s: f64,
@@ -96,7 +99,8 @@ pub(super) fn check(
     }
     let all = scenario.draft().control.iter().zip(scenario.control());
     let all = all.filter(|(control, _)| arm.is_none_or(|arm| control.at == arm));
-    let met = all.filter_map(|(control, placed)| Some((control, line_of(scenario, control, placed)?)));
+    let beside_m = if on_walk { BESIDE_WALK_M } else { BESIDE_M };
+    let met = all.filter_map(|(control, placed)| Some((control, line_of(scenario, (control, placed), beside_m)?)));
     let found = met.filter_map(|(control, line)| Some((control, passage(track, &line, until)?))).next();
     let Some((control, passage)) = found else {
         return (CheckResult::NotShown, NONE.to_owned());
@@ -162,7 +166,8 @@ fn slowed(track: &ActorTrack, crossed_s: f64) -> bool {
 /// Whether somebody drives over a line while its signal is red.
 pub(crate) fn runs_red(scenario: &Scenario, track: &ActorTrack) -> bool {
     let all = scenario.draft().control.iter().zip(scenario.control());
-    all.filter_map(|(control, placed)| Some((control, line_of(scenario, control, placed)?))).any(|(control, line)| {
+    let mut met = all.filter_map(|(control, placed)| Some((control, line_of(scenario, (control, placed), BESIDE_M)?)));
+    met.any(|(control, line)| {
         let crossed_s = passage(track, &line, track.states.len() - 1).and_then(|passage| passage.crossed_s);
         crossed_s.is_some_and(|at_s| control.device.aspect(at_s) == Some(Aspect::Red))
     })
@@ -187,13 +192,13 @@ struct Line {
     ahead: Vec2,
 }
 
-fn line_of(scenario: &Scenario, control: &Control, placed: &ControlPlacement) -> Option<Line> {
+fn line_of(scenario: &Scenario, (control, placed): (&Control, &ControlPlacement), beside_m: f64) -> Option<Line> {
     let network = scenario.network();
     let [one, other] = *network.stop_lines(std::slice::from_ref(control)).first()?;
     let &(lane, at_m) = placed.lines.first()?;
     let along = (other - one) * (1.0 / (other - one).length().max(1e-9));
     let ahead = Vec2::from_heading(network.lane(lane).heading(at_m));
-    Some(Line { from: one - along * BESIDE_M, to: other + along * BESIDE_M, ahead })
+    Some(Line { from: one - along * beside_m, to: other + along * beside_m, ahead })
 }
 
 /// Whether somebody came along to this line until a step: it crossed it, or it is right before it.

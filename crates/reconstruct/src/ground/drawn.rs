@@ -108,12 +108,12 @@ impl Told {
         self.cp.turning == Turning::Round && self.place == PlaceKind::Street && !crosses
     }
 
-    /// Whether the partner crosses a street on foot, as an animal, or as a rider that does what walkers do, where no road crosses it.
+    /// Whether the partner crosses a street on foot, as an animal, or as a rider that does what walkers do, where no road crosses it; or a highway.
     fn crosses_street(&self) -> bool {
         let rides = matches!(self.cp.kind, PartnerKind::Cyclist | PartnerKind::OtherNonMotorist);
         let crosses = self.cp.movement == Some(Movement::NmCrossing);
         let walk = rides && (crosses || self.layout.crosswalk || self.layout.beside_crosswalk);
         let on_foot = matches!(self.cp.kind, PartnerKind::Pedestrian | PartnerKind::Animal);
-        (on_foot || walk) && self.place == PlaceKind::Street
+        on_foot && self.place == PlaceKind::Highway || (on_foot || walk) && self.place == PlaceKind::Street
     }
 }

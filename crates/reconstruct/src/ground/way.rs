@@ -21,6 +21,9 @@ const AFTER_TURN_M: [f64; 4] = [0.0, 3.0, 6.0, 10.0];
 const ALONG_WALK_M: [f64; 3] = [0.0, -0.8, 0.8];
 const TURNED_SINE: f64 = 0.5;
 
+/// Who crosses short of the crosswalk does so before where the junction begins. [m]
+const SHORT_M: f64 = 2.0;
+
 /// Who stands at the right edge of its lane stands so far to the right of its middle. [m]
 const LANE_EDGE_M: f64 = 0.6;
 
@@ -103,7 +106,8 @@ impl Ground {
     /// crosses: the near one, the far one where it has come into the junction, or that of the road that it turns into.
     pub(super) fn at_walk(mut self, told: &Told) -> Self {
         let walk = self.beside.iter().position(|kind| *kind == StripKind::Sidewalk);
-        let Some(walk) = walk.filter(|_| self.junction && told.crosses_at_walk()) else { return self };
+        let short = told.crosses_before_walk();
+        let Some(walk) = walk.filter(|_| self.junction && (short || told.crosses_at_walk())) else { return self };
         let strips_m: f64 = self.beside[..walk].iter().map(|kind| kind.usual_width_m()).sum();
         let walk_m = self.lanes as f64 * LANE_M + strips_m + 0.5 * StripKind::Sidewalk.usual_width_m();
         let part_m = told.touched_ahead_m();
@@ -118,6 +122,8 @@ impl Ground {
                 let steps = (0..600).map(|step| APPROACH_M + 0.1 * f64::from(step));
                 steps.filter(turned).find(|s_m| aside_m(s_m) >= walk_m)
             }
+            // Where the ego's road has kerbs.
+            None if short => Some(APPROACH_M - SHORT_M - part_m),
             None if told.enters() => Some(APPROACH_M + corner_m(self.lanes) + walk_m - part_m),
             None => Some(APPROACH_M + corner_m(self.lanes) - walk_m - part_m),
         };

@@ -7,7 +7,7 @@ use crate::told::crash::Told;
 use crate::told::others::{Extra, Role};
 use crate::told::sizes::size_of as size_of_kind;
 use crate::touch::staging::Staging;
-use crate::usual::WALKS_MPS;
+use crate::usual::{RUNS_MPS, WALKS_MPS};
 use recrash_model::kinds::PartnerKind;
 use recrash_model::rollout::Rollout;
 use recrash_model::scenario::{Actor, ActorPlan};
@@ -48,6 +48,7 @@ impl Scene<'_> {
             Role::Lead | Role::Thing => self.lead(extra, length_m).into_iter().collect(),
             Role::Slower => self.slower(length_m).into_iter().collect(),
             Role::Walker if extra.stays => vec![self.stays_close(extra)],
+            Role::Walker if extra.runs => vec![self.crosses(extra, RUNS_MPS, self.clears_s())],
             Role::Walker if kind == PartnerKind::Pedestrian => vec![self.crosses(extra, WALKS_MPS, self.clears_s())],
             Role::Walker => vec![self.crosses(extra, RIDES_MPS, self.clears_s())],
             Role::Animal if extra.led => vec![self.crosses(extra, WALKS_MPS, self.clears_s() - LEADS_S)],

@@ -3,10 +3,10 @@
 use crate::ground::way::Ground;
 use crate::pace::plain::{Pace, start_over};
 use crate::told::crash::Told;
-use crate::told::side::{Turning, size_of};
+use crate::told::side::{Turning, is_on_foot, size_of};
 use crate::touch::lanes;
 use crate::touch::staging::Staging;
-use crate::usual::{LANE_M, WHEELED_M};
+use crate::usual::{LANE_M, RUNS_LEAST_MPS, WHEELED_M};
 use recrash_model::account::{ContactState, LaneLine, LaneWord, LeftRight, Origin};
 use recrash_model::geometry::Vec2;
 use recrash_model::math;
@@ -175,6 +175,29 @@ impl Told {
         ground.beside.contains(&strip).then_some(y_m)
     }
 }
+
+/// Where no strip lies beside the lanes, who runs out stood so far beside them. [m]
+const BESIDE_LANES_M: f64 = 1.0;
+
+/// The pace of who runs across the road, on foot or as an animal: it stood on the outermost strip beside the lanes until then.
+pub(super) fn runs_out(told: &Told, staging: &Staging) -> Option<Pace> {
+    let fast = told.cp.speed_mps > RUNS_LEAST_MPS && told.cp.state == ContactState::Moving;
+    let crosses = matches!(told.origin, Origin::Cross { .. }) && told.sv.turning == Turning::No;
+    let sine = math::sin(staging.cp_came);
+    if !(is_on_foot(told.cp.kind) && fast && crosses) || sine.abs() < SQUARE_SINE {
+        return None;
+    }
+    let ground = &staging.ground;
+    let strips_m: f64 = ground.beside.iter().map(|kind| kind.usual_width_m()).sum();
+    let outermost_m = ground.beside.last().map_or(-2.0 * BESIDE_LANES_M, |kind| kind.usual_width_m());
+    // Who goes to the left comes from the right.
+    let edge_m = ground.lane_edges_m[usize::from(sine > 0.0)] + strips_m - 0.5 * outermost_m;
+    let aside_m = (staging.cp.position.y - ground.sv_pose(0.0).position.y) * -sine.signum();
+    start_over(told.contact_s, told.cp.speed_mps, (edge_m - aside_m) / sine.abs())
+}
+
+/// Who crosses the road so much along it is not square to it. [-]
+const SQUARE_SINE: f64 = 0.7;
 
 /// Nobody backs farther, or drives farther out of a driveway. [m]
 const FARTHEST_M: f64 = 14.0;

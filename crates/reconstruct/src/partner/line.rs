@@ -59,8 +59,10 @@ pub(super) fn line_to(told: &Told, staging: &Staging, pace: Pace, at: impl Fn(Po
     let gear = if reverse { -1.0 } else { 1.0 };
     let arm_m = recrash_roads::arm_m(cp.kind, size_of(cp).0);
     let motion = |heading: f64| Vec2::from_heading(heading) * gear;
+    // What comes off the vehicle ahead does not slow for the end of its course before it has come off.
+    let fastest_mps = if told.dropped.is_some() { pace.speed_mps } else { cp.speed_mps };
     let beyond =
-        Pose { position: staging.cp.position + motion(staging.cp.heading) * beyond_m(cp.speed_mps), ..staging.cp };
+        Pose { position: staging.cp.position + motion(staging.cp.heading) * beyond_m(fastest_mps), ..staging.cp };
     let length = |start: Pose| -> Option<f64> {
         let mut course = Course::begin(arm_m);
         course.curve(start, staging.cp, reverse).then(|| course.length_m())

@@ -45,6 +45,7 @@ pub(super) fn partner_paces(told: &Told, staging: &Staging) -> (Option<Lead>, Pa
         .or_else(|| cross_from_line(told, staging))
         .or_else(|| cross_from_stalls(told, staging))
         .or_else(|| beside::from_kerb(told, staging))
+        .or_else(|| beside::runs_out(told, staging))
         .unwrap_or_else(|| partner_pace(told, staging, (&ego, ego_m, before_s)));
     // Who stands behind an ego that came along, stood and backs came along behind it.
     let came_m = ego_lead.as_ref().filter(|lead| lead.speed_mps > 0.0 && backs_last).map(Lead::driven_m);

@@ -15,8 +15,8 @@ use crate::told::lies::Lies;
 use crate::told::side::Turning;
 use crate::told::times::CONTACT_S;
 use recrash_model::account::{
-    Account, Act, Astride, ContactState, CrashType, Fact, FirstContact, KindGroup, LaneLine, LeftRight, Origin,
-    PlaceKind, Source, Striker, Untold, told,
+    Account, Act, Astride, ContactState, CrashType, Fact, FirstContact, KindGroup, LaneLine, LaneWord, LeftRight,
+    Origin, PlaceKind, Source, Striker, Untold, told,
 };
 
 /// Who comes towards the ego partly in that one's lane is over the line between the directions; not who is over one between two of its own.
@@ -69,7 +69,7 @@ impl Told {
             cp.acts.retain(|doing| !doing.is_begun_pass());
         }
         let lies = thing.and_then(|_| Lies::of(partner, &sv, place));
-        cp.size = lies.and_then(Lies::size).or_else(|| things::size(partner)).or(cp.size);
+        cp.size = lies.and_then(Lies::size).or_else(|| things::size(partner, &sv)).or(cp.size);
         let gate_swings = thing.is_some_and(|kind| things::swings(kind, partner, told(&account.striker)));
         if gate_swings {
             // Its post stands.
@@ -83,6 +83,8 @@ impl Told {
         let origin = origin.or(assumed_from).unwrap_or(Origin::Behind);
         cp.astride = partner.astride.as_ref().map(|over| over_from(over, origin));
         let layout = Layout::of(account, partner);
+        // Who rides along the sidewalk of the crossing road comes over the crosswalk, and along no lane.
+        cp.lane = cp.lane.filter(|lane| *lane != LaneWord::Sidewalk || !matches!(origin, Origin::Cross { .. }));
         let comes_round = origin_told && origin::comes_round(origin, partner, cp.state, cp.movement);
         let right = Some(LeftRight::Right);
         let origin = match comes_round {
@@ -94,14 +96,15 @@ impl Told {
         };
         let edge = Some(origin).filter(|_| !gate_swings && account.door.is_none());
         let edge = edge.and_then(|origin| edge::side(account, &sv, &cp, lies, origin));
-        if edge.is_some() && things::size(partner).is_none() {
+        if edge.is_some() && things::size(partner, &sv).is_none() {
             cp.size = edge::size(kind).or(cp.size);
         }
-        let dropped = things::dropped_by(account, partner, &sv, place).filter(|_| edge.is_none() && lies.is_none());
+        let dropped = things::dropped_by(account, partner, &sv).filter(|_| edge.is_none() && lies.is_none());
         if dropped.is_some() {
             cp.state = ContactState::Moving;
             assumed.retain(|assumed| !assumed.starts_with("the partner is "));
         }
+        let reaches_in = things::reaches_in(partner, &sv).filter(|_| edge.is_none() && cp.state.stands());
         let diagonal = edge::is_diagonal(partner, &cp);
         cp.backs_in = origin::backs_in(partner, cp.state, origin, place);
         let striker = told(&account.striker);
@@ -133,6 +136,7 @@ impl Told {
             thing,
             slides: things::slides(partner) && dropped.is_none(),
             gate_swings,
+            reaches_in,
             gate_opens: gate_swings && things::opens(partner),
             lies,
             dropped,
@@ -140,7 +144,7 @@ impl Told {
             edge,
             diagonal,
             lane_changed: things::changed_lanes_before(account),
-            walks_across: origin::walks_across(origin, partner),
+            walks_across: origin::walks_across(origin, partner, sv_reverses),
             origin,
             origin_told,
             heading_told: partner.heading.is_some(),
@@ -151,6 +155,7 @@ impl Told {
             // What "was propelled into the road" by nobody who is told came there.
             pushed: partner.did(Act::Pushed)
                 && !cp_reverses
+                && !gate_swings
                 && !(thing.is_some() && account.others.is_empty() && things::is_pushed_by_nobody(partner))
                 || crash_type == CrashType::Secondary
                 || account.others.iter().any(|other| other.touched_partner),

@@ -55,7 +55,7 @@ fn stands_there(account: &Account, partner: &Party, (sv, cp): (&Side, &Side), be
         _ if !cp.state.stands() => false,
         Kind::Curb => true,
         // Else it is ahead.
-        Kind::Pole => true,
+        Kind::Pole => !things::lies_down(partner),
         Kind::Wall | Kind::Barrier => beside || !sv.zones.contains(&ContactZone::Front),
         Kind::Gate => beside,
         Kind::Object if things::is_fixed(partner) => true,

@@ -10,7 +10,8 @@ use crate::told::others::{Extra, GIVEN_WAY, Role, Thrower};
 use crate::told::queue::{leaves_lane, sets_off, waits_ahead};
 use crate::told::zones::side_of;
 use recrash_model::account::{
-    self, Account, Act, ActFact, Astride, ContactState, Fact, Kind, KindGroup, LeftRight, Origin, Other, StandReason,
+    self, Account, Act, ActFact, Astride, ContactState, Fact, Kind, KindGroup, LeftRight, Manner, Origin, Other,
+    StandReason,
 };
 
 /// Things in the way, by their words.
@@ -190,6 +191,7 @@ pub(super) fn wanted(told: &Told, account: &Account) -> Vec<Extra> {
                     hides: other.hides,
                     passed,
                     stays,
+                    runs: role == Role::Walker && kind == Kind::Pedestrian && runs(other),
                     opposite: other.place.as_ref().is_some_and(|fact| fact.value == Origin::Opposite),
                     several: other.several,
                     number: number_of(other),
@@ -217,6 +219,11 @@ fn number_of(other: &Other) -> usize {
         word => MANY.contains(&word).then_some(3),
     };
     words.split(|letter: char| !letter.is_alphanumeric()).find_map(of).unwrap_or(2)
+}
+
+/// Whether somebody is told to run before the contact.
+fn runs(other: &Other) -> bool {
+    before_contact(other).any(|fact| fact.manner == Some(Manner::Fast))
 }
 
 /// Whether somebody is on its way into a space at the kerb: "a parallel parking van".

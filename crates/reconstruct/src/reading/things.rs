@@ -3,9 +3,10 @@
 use crate::reading::words::text;
 use crate::told::lies::Lies;
 use crate::told::side::{Side, Turning};
+use crate::told::zones::side_of;
 use recrash_model::account::{
-    Account, Act, ActFact, ContactState, Fact, Kind, KindGroup, Origin, Party, PlaceKind, RoadFeature, Source, Striker,
-    told,
+    Account, Act, ActFact, ContactState, Fact, Kind, KindGroup, LeftRight, Origin, Party, PlaceKind, RoadFeature,
+    Source, Striker, told,
 };
 use recrash_model::scenario::Size;
 use recrash_model::template::Movement;
@@ -40,7 +41,8 @@ impl Lies {
 }
 
 /// Lengths and widths of things that are longer or shorter than others of their kind, by the words for them; usual ones, assumed. [m]
-const SIZES_M: [(&str, f64, f64); 21] = [
+const SIZES_M: [(&str, f64, f64); 22] = [
+    ("fallen tree", 0.5, 4.0),
     ("solar panel", 1.6, 1.0),
     ("planter", 1.0, 1.0),
     ("bollard", 0.3, 0.3),
@@ -64,9 +66,35 @@ const SIZES_M: [(&str, f64, f64); 21] = [
     ("ball", 0.3, 0.3),
 ];
 
+/// Words for what stands else, and lies.
+const DOWN: [&str; 9] = ["fallen", "fell", "broken", "knocked", "downed", "lying", "laying", "lay", "laid"];
+
+/// What stands else lies across the lane; a branch that is not told to lie reaches into it from beside the road: along it, and across. [m]
+const LIES_ACROSS: Size = Size { length_m: 0.5, width_m: 2.0 };
+const REACHES_IN: Size = Size { length_m: 1.0, width_m: 2.4 };
+
+/// Whether it is told of what stands or hangs else that it lies: "a fallen sign", "a pole was lying across the lane".
+pub(super) fn lies_down(thing: &Party) -> bool {
+    let acts = thing.acts.iter().filter(|fact| !fact.after_contact).map(|fact| text(&fact.source));
+    let mut said = words_of(&thing.kind).into_iter().chain(acts);
+    said.any(|words| words.split(|letter: char| !letter.is_alphanumeric()).any(|word| DOWN.contains(&word)))
+}
+
+/// Whether the partner is a branch or the like that hangs or grows into the lane, on the side that is touched.
+pub(super) fn reaches_in(thing: &Party, sv: &Side) -> Option<LeftRight> {
+    let side = side_of(&sv.zones).filter(|_| told(&thing.kind) == Some(Kind::TreeBranch) && !lies_down(thing))?;
+    Some(if side > 0.0 { LeftRight::Left } else { LeftRight::Right })
+}
+
 /// The size of a small thing, where the words for it tell more than its kind.
-pub(super) fn size(thing: &Party) -> Option<Size> {
+pub(super) fn size(thing: &Party, sv: &Side) -> Option<Size> {
     let kind = told(&thing.kind)?;
+    if matches!(kind, Kind::Sign | Kind::Pole) && lies_down(thing) {
+        return Some(LIES_ACROSS);
+    }
+    if reaches_in(thing, sv).is_some() {
+        return Some(REACHES_IN);
+    }
     let small = matches!(kind, Kind::Debris | Kind::Object | Kind::Scooter | Kind::Cargo | Kind::Wall | Kind::Pole);
     let text = words_of(&thing.kind).filter(|_| small)?;
     let found = SIZES_M.iter().find(|(word, ..)| text.contains(word));
@@ -87,7 +115,7 @@ pub(super) fn partner(account: &Account) -> Option<Party> {
     let moves = ["roll", "slid", "skid", "blow", "blew", "flew", "fly", "bounc", "tumbl", "drift"];
     let came = words_of(&account.came_from).is_some_and(|text| moves.iter().any(|stem| text.contains(stem)));
     let thing = told(&partner.kind).is_some_and(is_thing);
-    if thing && came && partner.state.is_none() && !slides(&partner) {
+    if thing && (came || comes_off_beside(account)) && partner.state.is_none() && !slides(&partner) {
         let source = account.came_from.as_ref()?.source.clone();
         let rolls = ActFact {
             act: Act::Roll,
@@ -103,6 +131,19 @@ pub(super) fn partner(account: &Account) -> Option<Party> {
         partner.acts.push(rolls);
     }
     Some(partner)
+}
+
+/// "A loose object from a truck in the left lane struck the left side of the AV": it came over from there, and lay nowhere.
+fn comes_off_beside(account: &Account) -> bool {
+    let Some(partner) = &account.partner else { return false };
+    let beside = matches!(told(&account.came_from), Some(Origin::Beside { .. }));
+    let off = |fact: &ActFact| {
+        let kind = told(&partner.kind).unwrap_or(Kind::Object);
+        fact.act == Act::Fall && !fact.after_contact && falls(kind, &text(&fact.source))
+    };
+    let drives = account.others.iter().any(|other| other.kind.value.is_vehicle());
+    let gate = matches!(told(&partner.kind), Some(Kind::Gate | Kind::Barrier | Kind::TreeBranch));
+    beside && drives && !gate && told(&account.striker) == Some(Striker::Cp) && partner.acts.iter().any(off)
 }
 
 fn is_thing(kind: Kind) -> bool {
@@ -169,32 +210,38 @@ pub(super) fn opens(thing: &Party) -> bool {
 /// Size of the post of a gate that swings. [m]
 pub(super) const POST: Size = Size { length_m: 0.3, width_m: 0.3 };
 
-/// What falls off the vehicle ahead does so at no higher speed: no scenario has a thing that is faster. [m/s]
-const DROPPED_MOST_MPS: f64 = 15.0;
-
 /// Who is named no farther behind the words that a thing came from somewhere is where it came from. [byte]
 const FROM_WITHIN: usize = 16;
 
+/// Whether words tell that a thing came off somebody: "slid off", "came loose". What had fallen before, or had been blown over, lies there; and a
+/// branch breaks off a tree.
+fn falls(kind: Kind, text: &str) -> bool {
+    match kind {
+        Kind::TreeBranch => ["fell", "came off", "from under"].iter().any(|word| text.contains(word)),
+        _ => !["fallen", "blown", "lying", "laying"].iter().any(|word| text.contains(word)),
+    }
+}
+
 /// Which of the others a thing fell off, or came out from under, ahead of an ego that follows it: one whose place is told with that, or who
-/// is named right behind it. What had fallen before lies there.
-pub(super) fn dropped_by(account: &Account, partner: &Party, sv: &Side, place: PlaceKind) -> Option<usize> {
+/// is named right behind it.
+pub(super) fn dropped_by(account: &Account, partner: &Party, sv: &Side) -> Option<usize> {
+    let kind = told(&partner.kind)?;
     let drops = matches!(
-        told(&partner.kind)?,
+        kind,
         Kind::Debris | Kind::LooseWheel | Kind::Cargo | Kind::Object | Kind::Cart | Kind::TreeBranch | Kind::Cone
     );
     let along = sv.state == ContactState::Moving && sv.turning == Turning::No && sv.aside.is_none();
-    let slow = sv.impact_mps.map_or(place != PlaceKind::Highway, |mps| mps <= DROPPED_MOST_MPS);
-    if !drops || !along || !slow || told(&account.came_from) != Some(Origin::Ahead) {
+    if !drops || !along || told(&account.came_from) != Some(Origin::Ahead) {
         return None;
     }
     let words = |source: &Source| match source {
         Source::Words { start, end, text } => Some((*start, *end, text.to_lowercase())),
         _ => None,
     };
-    let falls = |text: &str| ["fell", "came off", "from under"].iter().any(|word| text.contains(word));
     let acts = partner.acts.iter().filter(|fact| !fact.after_contact);
     let said: Vec<_> = acts.filter_map(|fact| Some((fact.act, words(&fact.source)?))).collect();
-    let fell = said.iter().any(|(act, (.., text))| *act == Act::Fall && falls(text));
+    let fell = said.iter().any(|(act, (.., text))| *act == Act::Fall && falls(kind, text));
+    let from_under = |text: &str| ["fell", "came off", "from under"].iter().any(|word| text.contains(word));
     let from: Vec<usize> = said
         .iter()
         .filter(|(act, (.., text))| *act == Act::Enter && text.ends_with("from"))
@@ -203,7 +250,8 @@ pub(super) fn dropped_by(account: &Account, partner: &Party, sv: &Side, place: P
     account.others.iter().position(|other| {
         let drives = other.kind.value.group() != KindGroup::Object && !other.several && !other.touched_partner;
         let place = other.place.as_ref().filter(|fact| fact.value == Origin::Ahead);
-        let with_place = place.is_some_and(|fact| fell || words(&fact.source).is_some_and(|(.., text)| falls(&text)));
+        let with_place =
+            place.is_some_and(|fact| fell || words(&fact.source).is_some_and(|(.., text)| from_under(&text)));
         let named = words(&other.kind.source)
             .is_some_and(|(start, ..)| from.iter().any(|end| (*end..=end + FROM_WITHIN).contains(&start)));
         let named = named && other.place.as_ref().is_none_or(|fact| fact.value == Origin::Ahead);

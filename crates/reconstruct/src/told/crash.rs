@@ -39,6 +39,8 @@ pub(crate) struct Told {
     pub(crate) lies: Option<Lies>,
     /// Which of the others the partner fell off, or came out from under, ahead of the ego.
     pub(crate) dropped: Option<usize>,
+    /// It is a branch or the like that reaches into the ego's lane from this side.
+    pub(crate) reaches_in: Option<LeftRight>,
     /// The partner lies, hangs or stands across the entrance that the ego turned into.
     pub(crate) at_entrance: bool,
     /// The side of the road at whose edge the partner stands.

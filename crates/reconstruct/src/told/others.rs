@@ -138,6 +138,8 @@ pub(crate) struct Extra {
     pub(crate) hides: bool,
     /// Who is on foot is told to stay where it is, and not to cross.
     pub(crate) stays: bool,
+    /// Who is on foot is told to run.
+    pub(crate) runs: bool,
     /// It is told on the opposite side, and faces as those do who come from there.
     pub(crate) opposite: bool,
     /// More than one; and how many are to be drawn.
@@ -176,6 +178,7 @@ impl Extra {
             led: false,
             hides: false,
             stays: false,
+            runs: false,
             opposite: false,
             several: false,
             number: 2,

@@ -125,6 +125,14 @@ impl Side {
         matches!(self.movement, Some(Movement::EnteringTraffic | Movement::ParkingManeuver))
     }
 
+    /// Whether it is told to run, on foot: "ran out from between two trucks".
+    pub(crate) fn runs(&self) -> bool {
+        self.kind == PartnerKind::Pedestrian
+            && self.manner == Some(Manner::Fast)
+            && self.state == ContactState::Moving
+            && self.impact_mps.is_none()
+    }
+
     /// Whether it is told to have come into a junction.
     pub(crate) fn enters(&self) -> bool {
         self.acts.iter().any(Doing::is_entry)

@@ -3,7 +3,7 @@
 use crate::told::crash::Told;
 use crate::told::doing::Doing;
 use crate::told::side::{Side, Slowed, Turning, size_of};
-use crate::usual::{SLIDES_MPS, TURNS_MPS, WALKS_MPS, WHEELED_M};
+use crate::usual::{RUNS_MPS, SLIDES_MPS, TURNS_MPS, WALKS_MPS, WHEELED_M};
 use recrash_model::account::{ContactState, Manner, Origin, PlaceKind};
 use recrash_model::kinds::PartnerKind;
 use recrash_model::template::Movement;
@@ -160,6 +160,7 @@ impl Told {
             (_, true) => 0.0,
             (Some(told), false) => told.max(SLOWEST_MPS),
             (None, false) if self.queues() => fit(QUEUED_MPS),
+            (None, false) if self.cp.runs() => RUNS_MPS,
             (None, false) => as_told(self.cp.manner, fit(usual(&self.cp)), slow, self.posted_mps),
         };
         // Who sets off behind an ego that moves is faster.

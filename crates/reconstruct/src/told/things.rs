@@ -40,6 +40,13 @@ impl Told {
         Some(if side > 0.0 { LeftRight::Left } else { LeftRight::Right })
     }
 
+    /// Whether the partner is a chain, a closed gate or a barrier, which bars the ego's way: no side of it is told.
+    pub(crate) fn bars_way(&self) -> bool {
+        let bars = matches!(self.thing, Some(Kind::Chain | Kind::Gate | Kind::Barrier));
+        let front = self.sv.zones.is_empty() || self.sv.zones.iter().any(|zone| zone.is_front());
+        bars && front && self.cp.state.stands() && self.lies.is_none() && self.edge.is_none() && !self.gate_swings
+    }
+
     /// Whether the partner is a thing that came into the way by itself.
     pub(crate) fn is_sliding(&self) -> bool {
         self.thing.is_some() && self.slides && self.cp.state == ContactState::Moving

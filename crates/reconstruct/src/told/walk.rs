@@ -19,6 +19,13 @@ impl Told {
         walks && moves && street && matches!(self.origin, Origin::Cross { .. }) && self.edge.is_none()
     }
 
+    /// Whether the partner crosses on foot short of the crosswalk, before a junction that the ego has not entered: off the kerb of the ego's road.
+    pub(crate) fn crosses_before_walk(&self) -> bool {
+        let moves = matches!(self.cp.state, ContactState::Moving | ContactState::SettingOff);
+        let short = self.cp.kind == PartnerKind::Pedestrian && self.layout.beside_crosswalk && moves;
+        short && matches!(self.origin, Origin::Cross { .. }) && self.sv.turning == Turning::No && !self.enters()
+    }
+
     /// The side to which the ego turns into the road over which the partner walks. Who turns right as somebody comes from the right meets that one
     /// before it has come there.
     pub(crate) fn turns_over_walk(&self) -> Option<LeftRight> {

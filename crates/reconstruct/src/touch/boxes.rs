@@ -174,6 +174,13 @@ pub(super) fn cp_points(told: &Told, zone: ContactZone) -> &'static [(f64, f64)]
         (Some(Lies::Hole), ContactZone::Rear | ContactZone::Front) => &points(zone)[..1],
         (Some(Lies::Hole), _) => &[],
         _ if told.stands_across() => &points(zone)[..1],
+        // Its end.
+        _ if let Some(side) = told.reaches_in => match (side, zone) {
+            (LeftRight::Right, ContactZone::RearLeft) | (LeftRight::Left, ContactZone::RearRight) => {
+                &points(zone)[1..2]
+            }
+            _ => &[],
+        },
         // Its middle hangs over the middle of the lane.
         (None, ContactZone::Rear) if told.meets_chain() == Some(LeftRight::Left) => &[(-1.0, 0.45)],
         (None, ContactZone::Rear) if told.meets_chain() == Some(LeftRight::Right) => &[(-1.0, -0.45)],

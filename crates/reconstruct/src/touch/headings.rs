@@ -51,8 +51,9 @@ pub(super) fn headings(told: &Told, sv_heading: f64, behind: f64) -> Vec<Heading
     if told.stands_across() {
         list.push((sv_heading, sv_heading + math::FRAC_PI_2));
     }
-    // It hangs a little aslant: the told corner comes to it first.
+    // It hangs a little aslant: the told corner comes to it first. What bars the way does so where the ego has turned, too.
     list.extend(told.meets_chain().map(|side| (sv_heading, sv_heading + sign(side) * rad(HANGS_DEG))));
+    list.extend(told.bars_way().then_some((sv_heading, sv_heading)));
     if told.backs_from_behind() {
         list.extend(REAR_TO_REAR_DEG.map(rad).map(|heading| (heading, heading)));
     }

@@ -69,6 +69,16 @@ const TRAILER_OF_TRUCK: &str = "The AV was traveling north on a narrow street wh
                                 heavy truck passed the stationary AV, the left side of the flat trailer attached to the heavy truck made \
                                 contact with the rear left side of the AV.";
 
+const BARRED: &str = "The AV was traveling north on Elm Street. The AV turned left into a parking lot and the front of the AV made contact with a chain \
+                      across the entrance.";
+
+const FALLEN: &str = "The AV was traveling east in the right lane when the front of the AV made contact with a fallen street sign that was lying in the lane.";
+
+const OVERHANGS: &str = "The AV was traveling east on Elm Street when the front right of the AV made contact with a tree branch that was hanging over the lane.";
+
+const BLEW_OFF: &str = "The AV was traveling in the center lane of a highway behind a flatbed truck when a sheet of plywood blew off the flatbed truck and \
+                        struck the front of the AV.";
+
 /// The stories of this file, as they are shown.
 pub fn shown() -> Vec<(String, Account, Reconstruction)> {
     let texts =
@@ -330,4 +340,62 @@ fn an_animal_that_touched_the_underside_is_clear_of_the_sides() {
     };
     assert_eq!(zones(0.0), CheckResult::Shown, "{:?}", shown.verdict);
     assert_eq!([zones(2.0), zones(-2.0)], [CheckResult::CannotBeShown; 2]);
+}
+
+#[test]
+fn what_bars_an_entrance_is_across_the_way_of_who_turns_in() {
+    let shown = made(&story(BARRED));
+    let (object, ..) = thing(&shown);
+    let Place::Plane { heading_deg, .. } = object.at else { panic!("{:?}", object.at) };
+    let ego = shown.rollout.ego_track().states[before_contact(&shown)];
+    let off = degrees_between(heading_deg.to_radians(), ego.heading);
+    assert!(
+        ego.heading > 1.0 && object.size.is_some_and(|size| size.width_m > 3.0) && off < 20.0,
+        "{object:?} {ego:?}"
+    );
+    // Lengthwise it bars nothing.
+    let mut draft = shown.draft.clone();
+    let Place::Plane { heading_deg, .. } = &mut draft.objects[0].at else { panic!("{:?}", draft.objects[0].at) };
+    *heading_deg += 90.0;
+    let scenario = recrash_roads::check(draft).expect("it can be drawn").value;
+    let rollout = recrash_sim::simulate(&scenario, recrash_sim::Ego::Recorded);
+    let held = held_against(&story(BARRED), &scenario, &rollout).expect("told");
+    assert!(held.failures().any(|check| check.kind == CheckKind::Approach), "{held:?}");
+}
+
+#[test]
+fn a_sign_that_has_fallen_lies_across_the_lane_and_one_that_stands_does_not() {
+    let shown = made(&story(FALLEN));
+    let (object, ..) = thing(&shown);
+    assert!(object.kind == ObstacleKind::Debris && object.size.is_some_and(|size| size.width_m > 1.5), "{object:?}");
+    let stands = made(&story(&FALLEN.replace("a fallen street sign that was lying in the lane", "a street sign")));
+    assert_eq!(thing(&stands).0.kind, ObstacleKind::Warning);
+}
+
+#[test]
+fn a_branch_that_hangs_into_the_lane_does_so_from_beside_it() {
+    let width_m = |text: &str| thing(&made(&story(text))).0.size.map_or(0.0, |size| size.width_m);
+    let shown = made(&story(OVERHANGS));
+    let (object, _, y_m) = thing(&shown);
+    let right_m = shown.rollout.ego_track().states[0].y - y_m + 0.5 * object.size.map_or(0.0, |size| size.width_m);
+    assert!(right_m > 2.5, "{object:?}");
+    assert!(width_m(&OVERHANGS.replace("hanging over", "lying in")) < 1.0);
+}
+
+#[test]
+fn what_blows_off_the_truck_ahead_comes_along_with_it_on_a_highway_too() {
+    let account = story(BLEW_OFF);
+    let shown = made(&account);
+    let (states, met) = partner(&shown);
+    assert!(states[0].speed() > 10.0 && met.speed() < states[0].speed() - 5.0, "{:?} {met:?}", states[0]);
+    let truck = shown.rollout.actors.iter().find(|track| track.id == "near").expect("the truck");
+    let last = before_contact(&shown);
+    assert!((truck.states[last].y - truck.states[0].y).abs() < 0.5, "{:?}", truck.states[last]);
+    let behind_m = truck.states[0].x - states[0].x - 0.5 * truck.length_m;
+    assert!((0.0..4.0).contains(&behind_m), "{behind_m}");
+    // What had fallen off lay there.
+    let lying = "the front of the AV made contact with a sheet of plywood lying in the lane";
+    let lay =
+        story(&BLEW_OFF.replace("a sheet of plywood blew off the flatbed truck and struck the front of the AV", lying));
+    assert!(made(&lay).rollout.actors.iter().all(|track| track.id != "cp"));
 }

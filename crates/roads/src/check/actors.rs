@@ -169,7 +169,7 @@ fn plan(plan: &ActorPlan, kind: PartnerKind, path: At<'_>, remarks: &mut Remarks
     let spec = VehicleSpec::of(kind);
     place(&plan.start, format_args!("{path}.start"), remarks);
     // A plan may be faster than the engine of the physics: the record says how fast it was.
-    let fastest = if kind == PartnerKind::FixedObject { 15.0 } else { top_speed_mps(kind) };
+    let fastest = top_speed_mps(kind);
     remarks.number(format_args!("{path}.speed_mps"), plan.speed_mps, 0.0, fastest, "m/s");
     remarks.number(format_args!("{path}.appears_s"), plan.appears_s, 0.0, 120.0, "s");
     remarks.count(format_args!("{path}.course"), plan.course.len(), MOST_LEGS);
@@ -273,7 +273,8 @@ fn top_speed_mps(kind: PartnerKind) -> f64 {
         PartnerKind::Pedestrian => 8.0,
         PartnerKind::OtherNonMotorist | PartnerKind::Cyclist => 20.0,
         PartnerKind::Animal => 18.0,
-        PartnerKind::FixedObject => 15.0,
+        // What comes off somebody is as fast as that.
+        PartnerKind::FixedObject => 45.0,
         _ => 60.0,
     }
 }

@@ -4,7 +4,9 @@ use super::{Clues, forward};
 use crate::fold::Reading;
 use crate::fold::party::{has_zone, movement_column};
 use crate::lexicon::Relation;
-use recrash_model::account::{Account, Act, ActFact, ContactState, Fact, KindGroup, LeftRight, Origin, Party, told};
+use recrash_model::account::{
+    Account, Act, ActFact, ContactState, Fact, Kind, KindGroup, LeftRight, Origin, Party, told,
+};
 use recrash_model::template::{Movement, RoadType};
 use recrash_model::zones::ContactZone as Z;
 
@@ -42,13 +44,21 @@ pub(super) fn by_side(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origi
     }
     let walks = told(&partner.kind).is_some_and(|kind| matches!(kind.group(), KindGroup::OnFoot | KindGroup::Animal));
     let flank = !has_zone(&account.sv, |zone| zone.is_front() || zone.is_rear());
-    if let (true, true, Some(side)) = (walks, flank, zone_side(account)) {
+    let beside = flank || is_beside_on_foot(account, partner);
+    if let (true, true, Some(side)) = (walks, beside, zone_side(account)) {
         return Some(Fact::by_rule(Origin::Cross { side }, "the side that somebody on foot touched"));
     }
     let animal = told(&partner.kind).is_some_and(|kind| kind.group() == KindGroup::Animal);
     let driven_over = has_zone(&account.sv, |zone| zone == Z::Bottom) && forward(account);
     (animal && (driven_over || has_zone(&account.sv, |zone| zone.is_front())))
         .then(|| Fact::by_rule(Origin::Ahead, "an animal that the front touches is ahead"))
+}
+
+/// Somebody on foot whom a corner touches, and neither the plain front nor the plain rear, comes from that side, whatever columns tell.
+fn is_beside_on_foot(account: &Account, partner: &Party) -> bool {
+    let backs = told(&account.sv.state) == Some(ContactState::Reversing);
+    let plain = has_zone(&account.sv, |zone| matches!(zone, Z::Front | Z::Rear));
+    told(&partner.kind) == Some(Kind::Pedestrian) && !backs && !plain && zone_side(account).is_some()
 }
 
 /// "It was waiting to leave the park when a van, turning right into the entrance, swung wide and struck it": from the road before it, to the
@@ -79,6 +89,9 @@ pub(super) fn by_columns(reading: &Reading<'_>, account: &Account) -> Option<Fac
     let rule = |value: Origin| Some(Fact::by_rule(value, "zones of both and the movement columns"));
     // No animal changes lanes.
     if told(&partner.kind).is_some_and(|kind| matches!(kind.group(), KindGroup::Object | KindGroup::Animal)) {
+        return None;
+    }
+    if is_beside_on_foot(account, partner) {
         return None;
     }
     let (cp, sv) = (movement_column(reading), reading.record.sv_movement.known());

@@ -253,7 +253,11 @@ fn came_off(clues: &Clues<'_>, account: &Account) -> Option<LeftRight> {
     let vehicle = |kind: Option<Kind>| kind.is_some_and(Kind::is_vehicle);
     let mut others = actors().filter(|(actor, known)| *actor != clues.actor && vehicle(known.kind));
     // Off one that comes the other way: over from the lanes on the left.
-    if actors().any(|(actor, known)| vehicle(known.kind) && comes_against(&Clues { reading: clues.reading, actor })) {
+    let against = |actor: Actor| {
+        let other = Clues { reading: clues.reading, actor };
+        comes_against(&other) || other.any(Relation::Opposite)
+    };
+    if actors().any(|(actor, known)| vehicle(known.kind) && against(actor)) {
         return Some(LeftRight::Left);
     }
     let (only, more) = (others.next(), others.next());

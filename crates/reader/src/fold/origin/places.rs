@@ -33,7 +33,7 @@ pub(crate) fn side_of_road_of(
     })
 }
 
-/// "left side of the street", "south sidewalk", of who goes west: the left one.
+/// "left side of the street", "south sidewalk", of who goes west: the left one. A median is on the left.
 pub(crate) fn side_named_at(reading: &Reading<'_>, at: usize, own: Option<Compass>) -> Option<LeftRight> {
     let word = |at: usize| reading.story.tokens.get(at).map_or("", |token| token.text.as_str());
     let compass = |at: usize| match word(at) {
@@ -46,6 +46,10 @@ pub(crate) fn side_named_at(reading: &Reading<'_>, at: usize, own: Option<Compas
     let road = |at: usize| (at..at + 5).any(|at| matches!(word(at), "road" | "roadway" | "street" | "alley" | "lot"));
     let kerb = matches!(word(at + 1), "sidewalk" | "curb");
     match word(at) {
+        // "crossed from the center median".
+        "median" if (1..=3).any(|back| at.checked_sub(back).is_some_and(|at| matches!(word(at), "from" | "off"))) => {
+            Some(LeftRight::Left)
+        }
         "left" if kerb || word(at + 1) == "side" && road(at + 2) => Some(LeftRight::Left),
         "right" if kerb || word(at + 1) == "side" && road(at + 2) => Some(LeftRight::Right),
         _ if kerb || word(at + 1) == "side" => match own?.eighths_to(compass(at)?) {
