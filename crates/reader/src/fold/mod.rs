@@ -2,6 +2,7 @@
 
 mod across;
 mod acts;
+mod ahead;
 mod astride;
 mod begun;
 mod contact;
