@@ -100,6 +100,7 @@ pub(super) fn controls(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<Control>
         of_those_ahead(reading, &mut all, turned_green.map(|(state, ..)| state));
         if turned_green.is_none() {
             told_alone(reading, &mut all);
+            light_changed(reading, &mut all);
         }
     }
     if let (Some((state, first, end)), true) =
@@ -307,6 +308,35 @@ fn of_those_ahead(reading: &Reading<'_>, all: &mut Vec<Fact<Control>>, turned: O
     }
 }
 
+/// "stood at a red light. Once the light had changed, it moved off": it turned green, though nobody tells to what.
+fn light_changed(reading: &Reading<'_>, all: &mut [Fact<Control>]) {
+    let tokens = &reading.story.tokens;
+    let word = |at: usize| tokens.get(at).map_or("", |token| token.text.as_str());
+    let red = |control: &&mut Fact<Control>| {
+        control.value.device == ControlDevice::Signal && control.value.state == Some(SignalState::Red)
+    };
+    let Some(control) = all.iter_mut().find(red) else { return };
+    let goes = |frame: &Frame| {
+        matches!(frame.act(), Some(Act::SetOff | Act::Enter | Act::Turn | Act::Follow)) && frame.happened()
+    };
+    let changes = |at: usize| {
+        let had = usize::from(matches!(word(at + 1), "had" | "then"));
+        let colour = matches!(word(at + had + 2), "to" | "from" | "red" | "yellow" | "green");
+        matches!(word(at), "light" | "signal" | "lights" | "signals")
+            && matches!(word(at + had + 1), "changed" | "changes" | "cycled" | "switched")
+            && !colour
+    };
+    let sentence = |at: usize| reading.story.sentences.iter().position(|run| (run.first..run.end).contains(&at));
+    let own = |at: usize| {
+        let first = sentence(at).map_or(at, |number| reading.story.sentences[number].first);
+        let next = reading.before(SUBJECT).any(|(_, frame)| frame.first > at && goes(frame));
+        next && !is_of_others(reading, (first, at + 1))
+    };
+    if (0..reading.until().min(tokens.len())).any(|at| changes(at) && own(at)) {
+        control.value.state = Some(SignalState::TurnedGreen);
+    }
+}
+
 /// "The signal was red for the AV as it came": told in no clause of anybody.
 fn told_alone(reading: &Reading<'_>, all: &mut Vec<Fact<Control>>) {
     let story = &reading.story;
@@ -442,7 +472,7 @@ fn named(words: &[&str]) -> Option<(ControlDevice, Option<SignalState>, usize)> 
         {
             (ControlDevice::Signal, Some(SignalState::Red), 3)
         }
-        ["red", "light" | "signal" | "traffic", ..] | ["red", "left" | "right", "turn", ..] => {
+        ["red", "light" | "signal" | "traffic" | "arrow", ..] | ["red", "left" | "right", "turn", ..] => {
             (ControlDevice::Signal, Some(SignalState::Red), 2)
         }
         ["green", "light" | "signal" | "traffic" | "arrow" | "showing", ..]

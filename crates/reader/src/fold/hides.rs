@@ -1,6 +1,7 @@
 //! Who hides somebody: behind whom, or from between whom, who is told of came out.
 
 use super::Reading;
+use super::ahead::is_told_of_subject;
 use crate::frame::Frame;
 use crate::token::Token;
 use crate::world::{Actor, SUBJECT};
@@ -11,7 +12,8 @@ pub(super) fn hides(reading: &Reading<'_>, actor: Actor, (first, end): (usize, u
     if !reading.story.world.actors[actor].kind.is_some_and(Kind::is_vehicle) {
         return false;
     }
-    let named = is_come_out_of(reading, first) && !is_of_subject(reading, first);
+    // "The AV pulled out from behind a van": it hides nobody from the subject vehicle.
+    let named = is_come_out_of(reading, first) && !is_told_of_subject(reading, first);
     named || is_hidden_by(reading, first) || bars_view(reading, end) || is_left(reading, actor)
 }
 
@@ -19,29 +21,21 @@ pub(super) fn hides(reading: &Reading<'_>, actor: Actor, (first, end): (usize, u
 const SMALL: [&str; 13] =
     ["a", "an", "the", "two", "three", "of", "some", "several", "other", "another", "one", "its", "row"];
 
-/// "came out from behind a van", "from between two of the waiting cars".
+/// "came out from behind a van", "from between two of the waiting cars", "appeared from the left behind a bus".
 fn is_come_out_of(reading: &Reading<'_>, first: usize) -> bool {
     let tokens = &reading.story.tokens;
-    let behind = (first.saturating_sub(SMALL_WITHIN)..first.saturating_sub(1)).rev().find(|at| {
-        let (one, next) = (tokens[*at].text.as_str(), tokens[*at + 1].text.as_str());
-        one == "from" && matches!(next, "behind" | "between")
+    let word = |at: usize| tokens[at].text.as_str();
+    let behind = (first.saturating_sub(SMALL_WITHIN)..first.saturating_sub(1)).rev().find_map(|at| {
+        let side = word(at + 1) == "the" && at + 3 < first && matches!(word(at + 2), "left" | "right");
+        let next = at + if side { 3 } else { 1 };
+        (word(at) == "from" && matches!(word(next), "behind" | "between")).then_some(next + 1)
     });
     let small = |token: &Token| SMALL.contains(&token.text.as_str());
-    behind.is_some_and(|at| tokens[at + 2..first].iter().all(small))
+    behind.is_some_and(|at| tokens[at..first].iter().all(small))
 }
 
 /// So many words back from a noun "from" may stand. [tokens]
 const SMALL_WITHIN: usize = 7;
-
-/// "The AV pulled out from behind a van": it hides nobody from the subject vehicle.
-fn is_of_subject(reading: &Reading<'_>, at: usize) -> bool {
-    let frames = reading.story.frames.iter().enumerate();
-    let of = frames.filter(|(number, frame)| {
-        let (begins, ends) = reading.window(*number);
-        !frame.aside && (begins..ends).contains(&at)
-    });
-    of.map(|(_, frame)| frame).next_back().is_some_and(|frame| frame.who == Some(SUBJECT))
-}
 
 /// "hidden by a parked van", "obscured behind the bus", "its view was blocked by a van"; not "its lane was blocked by a van".
 fn is_hidden_by(reading: &Reading<'_>, first: usize) -> bool {

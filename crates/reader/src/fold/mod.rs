@@ -3,6 +3,7 @@
 mod about_to;
 mod across;
 mod acts;
+mod ahead;
 mod astride;
 mod begun;
 mod contact;

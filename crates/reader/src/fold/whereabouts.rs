@@ -1,13 +1,17 @@
 //! Where others than the two are, seen from the subject vehicle.
 
 use super::Reading;
-use super::origin::{Clues, comes_against, first_relation, side_named_at, side_of_lane, side_of_road_of};
+use super::origin::{
+    Clues, at_curb, comes_against, first_relation, on_side_street, side_named_at, side_of_lane, side_of_road_of,
+};
+use super::{ahead, hides, touched};
 use crate::chunk::bound;
 use crate::frame::{Frame, zone_of};
 use crate::lexicon::{Form, Relation, Sense};
 use crate::token::Token;
 use crate::world::{Actor, SUBJECT};
 use recrash_model::account::{Act, Compass, Fact, Kind, KindGroup, LaneWord, LeftRight, Origin, Source};
+use recrash_model::zones::ContactZone;
 
 /// Where somebody else is: as told; else in its lane, beside that of the subject vehicle, or by the directions of the two.
 pub(crate) fn place_of(reading: &Reading<'_>, actor: Actor) -> Option<Fact<Origin>> {
@@ -26,6 +30,7 @@ pub(crate) fn place_of(reading: &Reading<'_>, actor: Actor) -> Option<Fact<Origi
     let value = relation.and_then(origin_of);
     let told = value.zip(relation).map(|(value, relation)| Fact { value, source: clues.has(relation) });
     comes_along_its_road(&clues, value)
+        .or_else(|| stands_in_other_lane(&clues, value))
         .or(told)
         .or_else(|| behind_partner(reading, actor))
         .or_else(|| in_queue(&clues))
@@ -47,6 +52,66 @@ pub(crate) fn place_of(reading: &Reading<'_>, actor: Actor) -> Option<Fact<Origi
         .or_else(|| in_next_lane(&clues))
         .or_else(|| goes_its_way(&clues))
         .or_else(|| stops_before_it(&clues))
+        .or_else(|| stopped_for(&clues))
+        .or_else(|| before_partner(&clues))
+        .or_else(|| named_with_another(&clues))
+        .or_else(|| ahead::ahead(&clues, queue_of(reading, actor)))
+        .or_else(|| across_the_street(&clues))
+        .or_else(|| on_cross_street(&clues))
+}
+
+/// "a van was double-parked across the street".
+fn across_the_street(clues: &Clues<'_>) -> Option<Fact<Origin>> {
+    let (reading, tokens) = (clues.reading, &clues.reading.story.tokens);
+    let stands = |frame: &Frame| matches!(frame.act(), Some(Act::Hold | Act::Park)) && frame.happened();
+    let vehicle = reading.story.world.actors[clues.actor].kind.is_some_and(Kind::is_vehicle);
+    reading.before(clues.actor).filter(|(_, frame)| vehicle && stands(frame)).find_map(|(number, _)| {
+        let (first, end) = reading.window(number);
+        let at = (first..end.saturating_sub(2)).find(|&at| {
+            let street = matches!(tokens[at + 2].text.as_str(), "street" | "road" | "roadway");
+            tokens[at].text == "across" && tokens[at + 1].text == "the" && street
+        })?;
+        Some(reading.told(Origin::Opposite, at, at + 3))
+    })
+}
+
+/// "a tram on the cross street": there, though nobody tells on which side. Who strikes a partner comes from where it throws that at the
+/// subject vehicle.
+fn on_cross_street(clues: &Clues<'_>) -> Option<Fact<Origin>> {
+    let (reading, actor) = (clues.reading, clues.actor);
+    let actors = &reading.story.world.actors;
+    let drives = actors[actor].kind.is_some_and(Kind::is_vehicle);
+    // "Cross traffic" comes from either side.
+    let (first, end) = actors[actor].kind_tokens?;
+    let called = reading.story.tokens[first..end].iter().any(|token| token.text.starts_with("cross"));
+    if !drives || called || !on_side_street(reading, actor) || actors[actor].heading.is_some() {
+        return None;
+    }
+    let side = match (reading.contacts.with_partner(&reading.story, actor), reading.contacts.partner) {
+        (Some(touch), Some(partner)) => {
+            let zone = touched::earlier(reading, touch).and_then(|touch| touch.value.of_partner);
+            let side = zone.and_then(flank);
+            match actors[SUBJECT].heading?.0.eighths_to(actors[partner].heading?.0) {
+                0 => side?,
+                4 => side.map_or(LeftRight::Left, LeftRight::other),
+                _ => return None,
+            }
+        }
+        _ => LeftRight::Right,
+    };
+    let rule = "on the crossing road, on a side that is assumed where no word tells it";
+    Some(Fact::by_rule(Origin::Cross { side }, rule))
+}
+
+/// "a bus in the leftmost lane stopped, as there was no room ahead", of one in the rightmost lane: beside it, whatever else is ahead.
+fn stands_in_other_lane(clues: &Clues<'_>, place: Option<Origin>) -> Option<Fact<Origin>> {
+    let (reading, actor) = (clues.reading, clues.actor);
+    let stands = |frame: &Frame| matches!(frame.act(), Some(Act::Hold | Act::Stop));
+    let drives = |frame: &Frame| matches!(frame.act(), Some(Act::Follow | Act::LaneChange | Act::Turn | Act::PullOut));
+    let any = |is: &dyn Fn(&Frame) -> bool| reading.before(actor).any(|(_, frame)| is(frame));
+    let still = any(&stands) && !any(&drives);
+    let own = place == Some(Origin::Ahead) && still && reading.story.world.actors[actor].lane.is_some();
+    own.then(|| in_other_lane(clues)).flatten()
 }
 
 /// The place that a relation to the subject vehicle tells.
@@ -208,10 +273,28 @@ fn on_oncoming_side(clues: &Clues<'_>) -> Option<Fact<Origin>> {
     let stands = |frame: &Frame| matches!(frame.act(), Some(Act::Hold | Act::Stop));
     reading.before(clues.actor).filter(|(_, frame)| stands(frame)).find_map(|(number, _)| {
         let (first, end) = reading.window(number);
-        let at = (first..end.saturating_sub(1)).find(|&at| tokens[at + 1].text == "side")?;
+        let at =
+            (fronted(reading, number)..first.max(end.saturating_sub(1))).find(|&at| tokens[at + 1].text == "side")?;
         let way = bound(&tokens[at].text)?;
         (own.eighths_to(way) == 4).then(|| reading.told(Origin::Opposite, at, at + 2))
     })
+}
+
+/// The side of a vehicle on which a zone is.
+const fn flank(zone: ContactZone) -> Option<LeftRight> {
+    match zone {
+        ContactZone::FrontLeft | ContactZone::Left | ContactZone::RearLeft => Some(LeftRight::Left),
+        ContactZone::FrontRight | ContactZone::Right | ContactZone::RearRight => Some(LeftRight::Right),
+        _ => None,
+    }
+}
+
+/// "On the westbound side a van was double-parked": where the words of a clause begin that is the first of its sentence.
+fn fronted(reading: &Reading<'_>, number: usize) -> usize {
+    let frames = &reading.story.frames;
+    let frame = &frames[number];
+    let later = frames[..number].iter().any(|other| other.sentence == frame.sentence);
+    if later { frame.first } else { reading.story.sentences[frame.sentence].first }
 }
 
 /// "A truck stopped in the adjacent oncoming lane": it came from there, where nothing tells that it went over.
@@ -221,6 +304,49 @@ fn stands_in_oncoming_lane(clues: &Clues<'_>) -> Option<Fact<Origin>> {
     let acts = || reading.before(actor).filter_map(|(_, frame)| frame.act());
     let stands = acts().next().is_some() && acts().all(|act| matches!(act, Act::Hold | Act::Stop));
     (lane == LaneWord::Opposing && stands).then(|| reading.told(Origin::Opposite, first, end))
+}
+
+/// "traffic ahead braked for a stalled bus": that is ahead too.
+fn stopped_for(clues: &Clues<'_>) -> Option<Fact<Origin>> {
+    let (reading, actor) = (clues.reading, clues.actor);
+    let slows = |frame: &Frame| matches!(frame.act(), Some(Act::Slow | Act::Stop | Act::Hold)) && frame.happened();
+    let for_it = |frame: &&Frame| frame.object == Some(actor) && slows(frame);
+    let ahead = |frame: &&Frame| {
+        let who = frame.who.filter(|who| ![SUBJECT, actor].contains(who));
+        who.is_some_and(|who| first_relation(&Clues { reading, actor: who }) == Some(Relation::Ahead))
+    };
+    let frames = reading.story.frames.iter().enumerate().filter(|(number, _)| !reading.is_after(*number));
+    let frame = frames.map(|(_, frame)| frame).find(|frame| for_it(frame) && ahead(frame))?;
+    reading.story.world.actors[actor].kind.filter(|kind| kind.is_vehicle())?;
+    Some(Fact { value: Origin::Ahead, source: reading.of(frame) })
+}
+
+/// "entered behind a car that had just cleared the junction", of a partner that crosses: the car came along its road.
+fn before_partner(clues: &Clues<'_>) -> Option<Fact<Origin>> {
+    let (reading, actor) = (clues.reading, clues.actor);
+    let partner = reading.contacts.partner?;
+    let actors = &reading.story.world.actors;
+    let follows = actors[partner].seen_from.contains(&(Relation::Behind, actor));
+    let (first, end) = actors[actor].kind_tokens.filter(|_| follows)?;
+    // "appeared from behind a van": that stands in the line of sight.
+    let place = first_place(reading, partner).filter(|_| !hides::hides(reading, actor, (first, end)))?;
+    matches!(place, Origin::Opposite | Origin::Cross { .. }).then(|| reading.told(place, first, end))
+}
+
+/// "stood behind a van and a hatchback": where the van is.
+fn named_with_another(clues: &Clues<'_>) -> Option<Fact<Origin>> {
+    let (reading, actor) = (clues.reading, clues.actor);
+    let actors = &reading.story.world.actors;
+    let (first, end) = actors[actor].kind_tokens?;
+    let word = |at: usize| reading.story.tokens.get(at).map_or("", |token| token.text.as_str());
+    let article = usize::from(first > 0 && matches!(word(first - 1), "a" | "an" | "the" | "two" | "another"));
+    let and = first.checked_sub(1 + article).filter(|at| word(*at) == "and")?;
+    let ahead = |other: &usize| {
+        let before = actors[*other].kind_tokens.is_some_and(|(_, end)| end == and);
+        before && first_relation(&Clues { reading, actor: *other }) == Some(Relation::Ahead)
+    };
+    let vehicle = actors[actor].kind.is_some_and(Kind::is_vehicle);
+    (1..actors.len()).find(ahead).filter(|_| vehicle).map(|_| reading.told(Origin::Ahead, first, end))
 }
 
 /// "a line of cars behind the truck": where the truck is.
@@ -312,6 +438,9 @@ fn at_side_of_road(clues: &Clues<'_>) -> Option<Fact<Origin>> {
     // "a van parked facing east on the north curb".
     let drives = reading.story.world.actors[actor].kind.is_some_and(Kind::is_vehicle);
     let parked = drives && reading.before(actor).any(|(_, frame)| frame.sense == Sense::Parked);
+    // "Two vans stood at the curb on the north side of the street".
+    let still = |frame: &Frame| matches!(frame.act(), Some(Act::Hold | Act::Stop | Act::Park));
+    let parked = parked || drives && reading.before(actor).all(|(_, frame)| still(frame)) && at_curb(reading, actor);
     if !(walks || parked) || turned {
         return None;
     }
@@ -388,22 +517,24 @@ fn in_that_queue(clues: &Clues<'_>) -> Option<Fact<Origin>> {
     let (reading, actor) = (clues.reading, clues.actor);
     let known = &reading.story.world.actors[actor];
     let word = |at: usize| reading.story.tokens[at].text.as_str();
-    let queues = |(number, _): (usize, &Frame)| {
-        let (first, end) = reading.window(number);
-        (first..end).any(|at| word(at).starts_with("queue") || word(at) == "lined" || word(at) == "backed")
+    let queues = |(number, _): &(usize, &Frame)| {
+        let (first, end) = reading.window(*number);
+        (first..end).any(|at| word(at).starts_with("queue") || matches!(word(at), "lined" | "backed" | "standstill"))
     };
-    if !known.several || !known.kind.is_some_and(Kind::is_vehicle) || !reading.before(actor).any(queues) {
+    let (_, queue) = reading.before(actor).find(queues).filter(|_| known.several)?;
+    if !known.kind.is_some_and(Kind::is_vehicle) {
         return None;
     }
     let stands = |frame: &Frame| matches!(frame.act(), Some(Act::Hold | Act::Stop)) && frame.happened();
     reading.before(SUBJECT).filter(|(_, frame)| stands(frame)).find_map(|(number, _)| {
         let (first, end) = reading.window(number);
-        let at = (first..end.saturating_sub(2)).find(|&at| {
-            word(at) == "in"
-                && matches!(word(at + 1), "that" | "the" | "this")
-                && matches!(word(at + 2), "queue" | "line")
-        })?;
-        Some(reading.told(Origin::Ahead, at, at + 3))
+        (first..end.saturating_sub(1)).filter(|at| word(*at) == "in").find_map(|at| {
+            let line = matches!(word(at + 1), "that" | "the" | "this")
+                && at + 2 < end
+                && matches!(word(at + 2), "queue" | "line");
+            let it = word(at + 1) == "it" && reading.story.frames[number].sentence == queue.sentence;
+            (line || it).then(|| reading.told(Origin::Ahead, at, at + if line { 3 } else { 2 }))
+        })
     })
 }
 
@@ -450,7 +581,8 @@ fn in_other_lane(clues: &Clues<'_>) -> Option<Fact<Origin>> {
 fn by_directions(clues: &Clues<'_>) -> Option<Fact<Origin>> {
     let actors = &clues.reading.story.world.actors;
     let ((own, ..), (other, first, end)) = (actors[SUBJECT].heading?, actors[clues.actor].heading?);
-    Some(clues.reading.told(met_from(own, other)?, first, end))
+    let aslant = || met_aslant(clues.reading, clues.actor, own.eighths_to(other));
+    Some(clues.reading.told(met_from(own, other).or_else(aslant)?, first, end))
 }
 
 /// "A van going west in the next lane cut in", of one that goes east: the lane is next to that of another who goes west. "A group of
@@ -485,6 +617,21 @@ fn met_from(own: Compass, other: Compass) -> Option<Origin> {
         6 => Origin::Cross { side: LeftRight::Right },
         _ => return None,
     })
+}
+
+/// "traveling northbound, entered the junction at green", told of one that goes northwest, and struck the one that it met: on a road that
+/// crosses aslant.
+fn met_aslant(reading: &Reading<'_>, actor: Actor, eighths: u8) -> Option<Origin> {
+    let enters =
+        |frame: &Frame| matches!(frame.act(), Some(Act::Enter | Act::RunRed | Act::RunStop)) && frame.happened();
+    let crosses = reading.before(actor).any(|(_, frame)| enters(frame));
+    let strikes = reading.contacts.with_partner(&reading.story, actor).is_some();
+    let side = match eighths {
+        1 | 3 => LeftRight::Left,
+        5 | 7 => LeftRight::Right,
+        _ => return None,
+    };
+    (crosses && strikes).then_some(Origin::Cross { side })
 }
 
 /// "It slowed for a bus turning right onto northbound Elm Street": which came westbound.

@@ -413,7 +413,10 @@ impl Parser<'_> {
         }
         // "turned left off northbound Elm Street".
         let turns = carry.frame.is_some_and(|frame| self.frames[frame].act() == Some(Act::Turn));
-        let from = carry.preposition == Some("from") || turns && carry.preposition == Some("off");
+        // "which came from the north": the verb has that word.
+        let the = usize::from(before.last().is_some_and(|token| token.text == "the"));
+        let came = before.iter().rev().nth(the).is_some_and(|token| token.text == "from");
+        let from = carry.preposition == Some("from") || came || turns && carry.preposition == Some("off");
         // "arrived from the west" goes east.
         // "from south to north" goes north.
         let pair = placed.end == placed.first + 3 && self.tokens[placed.first + 1].text == "to";

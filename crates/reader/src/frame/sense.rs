@@ -17,7 +17,7 @@ use recrash_model::account::{Act, Compass, Kind, KindGroup, LeftRight};
 
 type Rule = fn(&Parser<'_>, &Spoken<'_>, &Carry) -> Option<Sense>;
 
-const SENSES: [Rule; 56] = [
+const SENSES: [Rule; 57] = [
     lowers_a_part,
     goes_up_or_down,
     goes_down_a_hill,
@@ -29,6 +29,7 @@ const SENSES: [Rule; 56] = [
     pulls_up_to,
     lies_on_its_side,
     stands_backed_up,
+    reaches_back,
     remains_so,
     does_not_move,
     sits_inside,
@@ -294,7 +295,18 @@ fn stands_backed_up(parser: &Parser<'_>, verb: &Spoken<'_>, carry: &Carry) -> Op
     let away = matches!(next, "out" | "into") || from || !single(placed) && !up;
     // "in backed-up traffic".
     let adjective = backed && matches!(next, "traffic" | "vehicles" | "cars") && carry.preposition.is_some();
+    // "Vehicles in the next lane were backed up": they stand.
+    if backed && up && carry.be && several && !away {
+        return Some(Sense::Act(Act::Hold));
+    }
     (backed && (carry.be || remains) && !away || adjective).then_some(Sense::Other)
+}
+
+/// "a queue that reached back from the light" goes nowhere.
+fn reaches_back(parser: &Parser<'_>, verb: &Spoken<'_>, carry: &Carry) -> Option<Sense> {
+    let several = carry.subject.as_ref().is_some_and(|subject| parser.world.actors[subject.actor].several);
+    let next = parser.tokens.get(verb.placed().end).map_or("", |token| token.text.as_str());
+    (several && verb.sense == Sense::Approach && next == "back").then_some(Sense::Other)
 }
 
 /// "remained consistent", "remained in autonomous mode", "staying within its lane": nobody stands.

@@ -134,6 +134,10 @@ pub(crate) fn devices(told: &Told, ground: &Ground, ego: &ActorPlan, actors: &[A
             (Some(halt), Some(SignalState::TurnedRed)) => Some(turns_red(halt.brakes_s, told.contact_s)),
             // Who entered at yellow, and brakes in the junction, came to it then.
             (Some(halt), Some(SignalState::Yellow)) if told.enters() => Some(turns_yellow(halt.brakes_s, YELLOW_S)),
+            // Who stops for it does so when it has turned yellow.
+            (Some(halt), Some(SignalState::Yellow)) if told.stops_at_yellow() => {
+                Some(turns_yellow(halt.brakes_s, LONGEST_YELLOW_S))
+            }
             // Who waited sets off when it turns yellow.
             (_, Some(SignalState::Yellow)) if let Some(goes_s) = yellow_s => {
                 Some(turns_yellow(goes_s, LONGEST_YELLOW_S))
@@ -150,6 +154,8 @@ pub(crate) fn devices(told: &Told, ground: &Ground, ego: &ActorPlan, actors: &[A
     let across = other.clone().filter(|_| crosses).or_else(|| along.as_deref().map(opposite));
     // Who comes by an ego that waits at red has green: all others have red then.
     let comes_by = actors.iter().any(|actor| actor.id == Role::Oncoming.id());
+    // So has a partner that comes from there to an ego in the queue.
+    let comes_by = comes_by || told.comes_through_red();
     let waits = comes_by && told.reasons.contains(&StandReason::RedLight) && other.is_none();
     if waits {
         let program = |show: Aspect| Some(vec![Phase { show, for_s: ALWAYS_S }]);

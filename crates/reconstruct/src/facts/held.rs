@@ -415,7 +415,8 @@ impl<'a> Crash<'a> {
             let arm = signals::own_arm(self.told, self.scenario).filter(|_| of_partner);
             let at_red = self.told.keeps_red().filter(|_| !of_partner);
             let on_walk = of_partner && self.told.crosses_at_walk();
-            let asked = signals::Asked { said, arm, at_red, on_walk };
+            let stops_at_yellow = !of_partner && self.told.stops_at_yellow();
+            let asked = signals::Asked { said, arm, at_red, on_walk, stops_at_yellow };
             let seen = signals::check(asked, self.scenario, track, self.touch.time_s);
             let beside = of_partner && signals::is_beside_road(self.told);
             Some(held(kind, signals::words(said), if beside { signals::beside_road(seen) } else { seen }))
@@ -430,7 +431,8 @@ impl<'a> Crash<'a> {
         }
         let controlled = |device: ControlDevice| {
             let said = Said { device, state: None, obeyed: Some(Obeyed::Yes) };
-            let asked = signals::Asked { said, arm: None, at_red: self.told.keeps_red(), on_walk: false };
+            let (arm, at_red) = (None, self.told.keeps_red());
+            let asked = signals::Asked { said, arm, at_red, on_walk: false, stops_at_yellow: false };
             signals::check(asked, self.scenario, self.ego_track, self.touch.time_s).0 == CheckResult::Shown
         };
         let holds = |reason: &StandReason| match reason {

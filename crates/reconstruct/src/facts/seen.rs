@@ -6,7 +6,7 @@ use crate::facts::things;
 use crate::others::stand::{stands, stood_behind};
 use crate::told::crash::Told;
 use crate::told::near::Near;
-use crate::told::others::{Extra, GIVEN_WAY, Role};
+use crate::told::others::{Extra, GIVEN_WAY, Role, Thrower};
 use crate::told::queue::{leaves_lane, waits_ahead};
 use crate::told::side::Turning;
 use crate::usual::{LANE_M, RUNS_LEAST_MPS, STANDS_MPS};
@@ -62,6 +62,10 @@ pub(crate) struct Seen<'a> {
     until: usize,
 }
 
+/// Who comes along the crossing road is at such an angle to the ego's way, who comes towards it at more than that. [rad]
+const ACROSS_RAD: (f64, f64) = (0.6, 2.5);
+const TOWARDS_RAD: f64 = 2.0;
+
 impl<'a> Seen<'a> {
     pub(crate) fn new(told: &'a Told, rollout: &'a Rollout, time_s: f64) -> Self {
         let ego = rollout.ego_track();
@@ -102,14 +106,17 @@ impl<'a> Seen<'a> {
         match reason {
             StandReason::LeadVehicle if self.told.origin == Origin::Ahead => is(Role::Lead) || self.partner_leads(),
             // The queue ends behind the junction that the ego keeps clear.
-            StandReason::Queue if self.told.reasons.contains(&StandReason::BlockedJunction) => {
+            StandReason::Queue if self.told.wanted.iter().any(|extra| extra.role == Role::Beyond) => {
                 is(Role::Lead) || is(Role::Beyond)
             }
             StandReason::Queue | StandReason::LeadVehicle => is(Role::Lead),
             StandReason::Pedestrian => is(Role::Walker),
             StandReason::Animal => is(Role::Animal),
             StandReason::Yield => {
-                GIVEN_WAY.into_iter().any(is)
+                // Whom it keeps a junction clear for stand behind that.
+                let beyond = self.told.reasons.contains(&StandReason::Queue) && is(Role::Beyond);
+                beyond
+                    || GIVEN_WAY.into_iter().any(is)
                     || self.told.origin == Origin::Ahead && self.partner_leads()
                     || self.wanted().any(|(extra, track)| {
                         extra.awaited && extra.near.is_some() && Near::is_waited_for(self.ego, track, self.until)
@@ -169,7 +176,8 @@ impl<'a> Seen<'a> {
             let kind = self.told.pusher.and_then(Kind::partner_kind);
             let track = &self.rollout.actors[number];
             let stood = Self::mps(track, 0) < STANDS_MPS;
-            kind.is_none_or(|kind| kind == track.kind) && (stood || !self.told.pusher_stands)
+            let kind = kind.is_none_or(|kind| kind == track.kind);
+            kind && (stood || !self.told.pusher_stands) && self.comes_from(track)
         };
         let touches = |number: usize| {
             self.rollout.events.iter().any(|event| match event.kind {
@@ -178,6 +186,18 @@ impl<'a> Seen<'a> {
             })
         };
         number.is_some_and(|number| as_told(number) && touches(number))
+    }
+
+    /// Whether who threw the partner came from where it is told to: along the crossing road from a side, or towards the ego.
+    fn comes_from(&self, track: &ActorTrack) -> bool {
+        let (first, ego) = (&track.states[0], &self.ego.states[0]);
+        let facing = math::wrap_angle(first.heading - ego.heading);
+        match self.told.thrower {
+            Some(Thrower::Cross(LeftRight::Left)) => (-ACROSS_RAD.1..-ACROSS_RAD.0).contains(&facing),
+            Some(Thrower::Cross(LeftRight::Right)) => (ACROSS_RAD.0..ACROSS_RAD.1).contains(&facing),
+            Some(Thrower::Opposite) => facing.abs() > TOWARDS_RAD,
+            _ => true,
+        }
     }
 
     /// Whether somebody is there, of its kind, and does its part.

@@ -14,6 +14,9 @@ use recrash_roads::{ControlPlacement, Scenario};
 /// What changed within this time has just changed. [s]
 const JUST_S: f64 = 10.0;
 
+/// A light is yellow for so long at most. [s]
+const YELLOW_S: f64 = 5.0;
+
 /// Who stands no farther before a line stands at it. [m]
 const AT_LINE_M: f64 = 8.0;
 
@@ -82,12 +85,14 @@ pub(super) struct Asked<'a> {
     pub(super) at_red: Option<AtRed>,
     /// It comes along the sidewalk.
     pub(super) on_walk: bool,
+    /// Who came to a stop did so for a light that had turned yellow.
+    pub(super) stops_at_yellow: bool,
 }
 
 /// Whether a told signal or sign stood before somebody, showed what is told, and was obeyed or not as told. Who came to a stand for a
 /// light that changed did so before it was green.
 pub(super) fn check(
-    Asked { said, arm, at_red, on_walk }: Asked<'_>,
+    Asked { said, arm, at_red, on_walk, stops_at_yellow }: Asked<'_>,
     scenario: &Scenario,
     track: &ActorTrack,
     contact_s: f64,
@@ -128,6 +133,12 @@ pub(super) fn check(
             [Some(time_s), passage.stood_s].into_iter().flatten().any(|at_s| shows(at_s) == Some(Aspect::Red))
         }
         Some(SignalState::Green) => shows(time_s) == Some(Aspect::Green),
+        // It turned so before who stops for it came to a stand.
+        Some(SignalState::Yellow) if stops_at_yellow && passage.crossed_s.is_none() => {
+            let from_s = stood.last().map_or(contact_s, |at_s| at_s - STEP_S);
+            let back = |tenth: i32| shows((from_s - 0.1 * f64::from(tenth)).max(0.0));
+            waited && (0..=(YELLOW_S * 10.0) as i32).any(|tenth| back(tenth) == Some(Aspect::Yellow))
+        }
         Some(SignalState::Yellow) => shows(time_s) == Some(Aspect::Yellow),
         Some(SignalState::TurnedGreen) => shows(contact_s) == Some(Aspect::Green) && just(&[Aspect::Red]) && waited,
         Some(SignalState::TurnedRed) => {

@@ -4,6 +4,7 @@ use crate::ground::lanes::{has, is_one_way, lanes_for, told_lane, usual_lane};
 use crate::ground::pieces::{APPROACH_M, behind_median, corner_m, straight, strips};
 use crate::ground::way::{Across, Ground, with_way};
 use crate::told::crash::{AtRed, Told};
+use crate::told::near::{Does, Near};
 use crate::told::others::Role;
 use crate::told::side::{Turning, size_of};
 use crate::told::{queue, sizes};
@@ -30,7 +31,16 @@ fn queue_m(told: &Told) -> Option<f64> {
     let lead = told.extras.iter().find(|extra| extra.role == Role::Lead)?;
     let kind = lead.kind.partner_kind().unwrap_or(PartnerKind::PassengerCar);
     let long_m = sizes::size_of(lead.kind).map_or(VehicleSpec::of(kind).length_m, |size| size.length_m);
-    let ahead = if lead.several { lead.number as f64 } else { 1.0 };
+    // "behind a van and a hatchback": another one of them is of another kind.
+    let stands = |near: Near| near.place == Some(Origin::Ahead) && near.does == Does::Stands;
+    let two = told.wanted.iter().any(|extra| extra.near.is_some_and(stands));
+    let ahead = if lead.several {
+        lead.number as f64
+    } else if two {
+        2.0
+    } else {
+        1.0
+    };
     let aside_m = if told.sv_aside().is_some() { ROOM_M } else { 0.0 };
     let stands_m = 0.5 * size_of(&told.sv).0 + ahead * (LEAD_GAP_M + long_m) + aside_m + FIRST_AT_LINE_M;
     // Who has set off behind it has come nearer to the line.

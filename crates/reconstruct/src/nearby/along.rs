@@ -5,6 +5,7 @@ use crate::ground::pieces::corner_m;
 use crate::nearby::scene::{LOT_MPS, Scene};
 use crate::nearby::way::{BRAKES_MPS2, PASSES_BY_MPS, Way};
 use crate::others::stand::stands;
+use crate::told::others::Role;
 use crate::usual::{LANE_M, STANDS_MPS};
 use recrash_model::account::{LeftRight, Origin};
 use recrash_model::geometry::{Pose, Vec2};
@@ -89,7 +90,7 @@ impl<'a> Scene<'a> {
     pub(super) fn leads(&self, half_m: f64) -> Vec<Way> {
         let (s_m, _) = self.at(0);
         let mut list = Vec::new();
-        for t_m in self.lines() {
+        for t_m in self.own_line_first() {
             for speed_mps in self.speeds() {
                 let from =
                     |on_m: f64| Way::straight(self.road(s_m + self.front_m() + half_m + on_m, t_m), speed_mps, 0.0);
@@ -97,6 +98,14 @@ impl<'a> Scene<'a> {
             }
         }
         list
+    }
+
+    /// In the lane in which the ego came first: whom it changes lanes for is not in that to which it goes.
+    fn own_line_first(&self) -> Vec<f64> {
+        let own_m = self.told.sv_aside().map_or(0.0, |aside| aside.from_t_m);
+        let mut lines = self.lines();
+        lines.sort_by_key(|t_m| *t_m != own_m);
+        lines
     }
 
     /// Drives on ahead of what fell off it.
@@ -125,14 +134,13 @@ impl<'a> Scene<'a> {
         let (s_m, _) = self.at(self.until);
         let front_m = s_m + self.front_m() + half_m;
         let far = [3.0, 5.0, 7.5, 10.0, 16.0, 24.0, 30.0].into_iter().filter(|on_m| *on_m >= least_m);
-        // In the lane in which the ego came first: whom it changes lanes for does not stand in that to which it goes.
         let own_m = self.told.sv_aside().map_or(0.0, |aside| aside.from_t_m);
-        let mut lines = self.lines();
-        lines.sort_by_key(|t_m| *t_m != own_m);
+        let lines = self.own_line_first();
         let mut places: Vec<(f64, f64)> =
             far.flat_map(|on_m| lines.clone().into_iter().map(move |t_m| (front_m + on_m, t_m))).collect();
-        // Ahead of a partner that is in that lane itself.
-        if self.told.origin == Origin::Ahead {
+        // Ahead of a partner, or of the queue's first one, that is in that lane itself.
+        let queue = self.told.extras.iter().any(|extra| extra.role == Role::Lead && !extra.goes);
+        if self.told.origin == Origin::Ahead || queue {
             places.sort_by_key(|(_, t_m)| *t_m != own_m);
         }
         let across_m = self.ground.first_m() + 2.0 * corner_m(self.ground.lanes) + half_m;

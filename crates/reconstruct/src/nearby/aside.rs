@@ -116,10 +116,13 @@ impl<'a> Scene<'a> {
     pub(super) fn turners(&self) -> Vec<Way> {
         let Some(exit) = self.arm(LeftRight::Right, true, 0.0) else { return Vec::new() };
         let begins = self.against(self.ground.first_m() + 2.0 * corner_m(self.ground.lanes) - 6.0);
-        let turns = |before_s: f64| {
-            let way = Way::straight(begins, TURNS_MPS, (self.contact_s - before_s).max(0.5));
+        let turns = |speed_mps: f64, before_s: f64| {
+            let way = Way::straight(begins, speed_mps, (self.contact_s - before_s).max(0.5));
             Way { by: vec![begins, exit], ..way }
         };
-        [4.0, 3.0, 5.5, 7.0, 2.0].into_iter().map(turns).collect()
+        let usual = [4.0, 3.0, 5.5, 7.0, 2.0].map(|before_s| turns(TURNS_MPS, before_s));
+        // Before an ego that has set off at green just now.
+        let faster = [2.5, 2.0, 3.0].map(|before_s| turns(DRIVES_MPS, before_s));
+        usual.into_iter().chain(faster).collect()
     }
 }

@@ -101,6 +101,12 @@ impl<'a> Scene<'a> {
         to_m.into_iter().chain([from_m]).chain(beside).collect()
     }
 
+    /// Whether a lane lies there, of either direction.
+    pub(super) fn lies_in_lane(&self, t_m: f64) -> bool {
+        let [left_m, right_m] = self.ground.kerbs_m.map(|kerb_m| kerb_m - 0.5 * StripKind::Parking.usual_width_m());
+        t_m < right_m && t_m > -left_m
+    }
+
     pub(super) fn beside_m(&self, side: LeftRight, step: usize) -> f64 {
         let lane_m = (self.at(step).1 / LANE_M).round() * LANE_M;
         lane_m + if side == LeftRight::Left { -LANE_M } else { LANE_M }

@@ -93,8 +93,11 @@ impl<'a> Scene<'a> {
                 if !stands {
                     list.extend(self.beside(side));
                 }
-                list.extend(self.stands_beside(side, half_m));
-                list.extend(at_kerb(side));
+                // Where no lane is beside the ego's one stands at the kerb.
+                let lane = self.lies_in_lane(self.beside_m(side, self.until));
+                let (first, last) = (self.stands_beside(side, half_m), at_kerb(side));
+                let (first, last) = if lane { (first, last) } else { (last, first) };
+                list.extend(first.into_iter().chain(last));
             }
             Some(Origin::Cross { side }) => list.extend(self.crosses(side, near.does, half_m)),
             _ if near.across => {

@@ -57,7 +57,7 @@ impl Scene<'_> {
             Role::Oncoming => self.oncoming().into_iter().collect(),
             Role::Kerb => self.parked(extra, length_m),
             Role::Obstacle => vec![self.obstacle(extra, (length_m, width_m))],
-            Role::Passed => self.passed(extra, length_m).into_iter().collect(),
+            Role::Passed => self.passed(extra, (length_m, width_m)).into_iter().collect(),
             Role::Blocker => self.blocker(length_m).into_iter().collect(),
             Role::Beyond => self.beyond(length_m).into_iter().collect(),
             Role::Screen => self.screen(extra, length_m).into_iter().collect(),

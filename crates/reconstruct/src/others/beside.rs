@@ -6,7 +6,7 @@ use crate::told::others::{Extra, Role};
 use crate::told::side::size_of;
 use crate::usual::{LANE_M, LEAD_GAP_M, ROOM_M, beyond_m};
 use recrash_model::account::{ContactState, LeftRight, Origin};
-use recrash_model::geometry::Vec2;
+use recrash_model::geometry::{OrientedBox, Pose, Vec2};
 use recrash_model::math;
 use recrash_model::rollout::ActorTrack;
 use recrash_model::scenario::{ActorPlan, Leg, Place, Strip, StripKind};
@@ -17,6 +17,10 @@ const BETWEEN_M: f64 = 0.6;
 /// Whom the partner passes before it comes in, it has passed so long before the contact, so far beside. [steps, m]
 const PASSED_BEFORE: usize = 35;
 const PASSED_BESIDE_M: f64 = 3.0;
+
+/// One that the partner would touch as it leaves its line stands farther on by so much, so often. [m, -]
+const FARTHER_M: f64 = 0.5;
+const FARTHER_STEPS: u8 = 16;
 
 /// Who is slow, and for whom the partner leaves its lane, drives at so much of the partner's speed. [-]
 const SLOWER: f64 = 0.6;
@@ -71,7 +75,7 @@ impl Scene<'_> {
     }
 
     /// Whom the partner goes round: in the line on which it came, where it has left that, or ahead of where it touches the ego.
-    pub(super) fn passed(&self, extra: &Extra, length_m: f64) -> Option<ActorPlan> {
+    pub(super) fn passed(&self, extra: &Extra, (length_m, width_m): (f64, f64)) -> Option<ActorPlan> {
         let track = self.partner?;
         let (came, met) = (track.states[0].pose(), track.states[self.until.min(track.states.len() - 1)].pose());
         let along = Vec2::from_heading(came.heading);
@@ -88,7 +92,17 @@ impl Scene<'_> {
             Some(state) => along.dot(state.position() - came.position),
             None => along.dot(met.position - came.position) + 0.5 * (track.length_m + length_m) + ROUND_AHEAD_M,
         };
-        let at = came.position + along * on_m + along.left() * (to_ego * aside_m);
+        // No nearer than where the partner, which leaves its line, has come clear of it.
+        let stands = |on_m: f64| came.position + along * on_m + along.left() * (to_ego * aside_m);
+        let clear = |on_m: &f64| {
+            let pose = Pose { position: stands(*on_m), heading: came.heading };
+            let body = OrientedBox::new(pose, length_m, width_m);
+            (0..=self.until).all(|step| track.outline(step.min(track.states.len() - 1)).gap(&body) > BETWEEN_M)
+        };
+        let farther = (0..=FARTHER_STEPS).map(|step| on_m + f64::from(step) * FARTHER_M);
+        let leaves = over && left.is_some() && !extra.slow;
+        let on_m = farther.into_iter().find(|on_m| !leaves || clear(on_m)).unwrap_or(on_m);
+        let at = stands(on_m);
         let place = |at: Vec2| Place::at(at.x, at.y, came.heading.to_degrees());
         let mean_mps = along.dot(met.position - came.position) / (0.1 * self.until.max(1) as f64);
         let speed_mps = if extra.slow { SLOWER * mean_mps } else { 0.0 };

@@ -40,6 +40,12 @@ const GRAZES_M: f64 = 0.05;
 /// Who touches the partner on its way is faster than it by so much. [m/s]
 const NUDGE_MPS: f64 = 2.0;
 
+/// Who comes up behind the partner begins no nearer to its rear. [m]
+const BEGINS_BEHIND_M: f64 = 2.0;
+
+/// Who would be faster than the partner by more for that begins elsewhere. [m/s]
+const MOST_NUDGE_MPS: f64 = 5.0;
+
 /// Who comes over from beside the partner's line leaves its own so long before, on so much of its way at least; it touches so far beside the
 /// middle, at this angle. [s, m, m, rad]
 const COMES_OVER_S: f64 = 2.5;
@@ -165,6 +171,10 @@ pub(super) fn nudger(told: &Told, staging: &Staging, own: OwnWay) -> Actor {
         return actor(ActorPlan { speed_mps, course, ..ActorPlan::standing(at(start)) });
     }
     let touches = staging.cp.position - way * (cp.speed_mps * THROW_S + 0.5 * (size_of(cp).0 + length_m));
+    // It begins behind the partner, which may have slowed since.
+    let driven_m = own.driven_m - cp.speed_mps * THROW_S + BEGINS_BEHIND_M;
+    let least_mps = driven_m / (told.contact_s - THROW_S);
+    let speed_mps = if least_mps > cp.speed_mps + MOST_NUDGE_MPS { speed_mps } else { speed_mps.max(least_mps) };
     let start = touches - way * (speed_mps * (told.contact_s - THROW_S));
     let degrees = staging.cp.heading.to_degrees() + if gear < 0.0 { 180.0 } else { 0.0 };
     let place = |point: Vec2| Place::at(point.x, point.y, degrees);
@@ -293,6 +303,7 @@ fn as_the_ego(told: &Told, staging: &Staging) -> Option<Pace> {
 /// on a street, where it can be. [m/s]
 fn push_mps(told: &Told, partner_mps: f64) -> f64 {
     match told.cp.impact_mps {
+        None if told.pusher_fast => (told.fast_mps() - partner_mps).max(LEAST_THROW_MPS),
         Some(mps) => (2.0 * (mps - partner_mps)).clamp(LEAST_THROW_MPS, PUSH_MPS),
         None => (STREET_MPS - partner_mps).clamp(LEAST_THROW_MPS, PUSH_MPS),
     }

@@ -150,7 +150,8 @@ impl Told {
             heading_told: partner.heading.is_some(),
             faces: courses::faces(&account.sv, partner),
             comes_round,
-            comes_over: origin::comes_over(origin, [&account.sv, partner], movement),
+            comes_over: origin::comes_over(origin, [&account.sv, partner], movement)
+                || origin::goes_round_another(origin, account, partner),
             order,
             // What "was propelled into the road" by nobody who is told came there.
             pushed: partner.did(Act::Pushed)
@@ -163,6 +164,7 @@ impl Told {
             thrower: others::thrower(account),
             touch: others::touch(account),
             pusher_stands: others::pusher_stands(account),
+            pusher_fast: others::pusher_fast(account),
             pushed_rolling,
             throwers: account.others.iter().filter(|other| other.touched_partner).count().min(1),
             sv_trailer: trailer::touches(&account.sv),

@@ -5,8 +5,8 @@ use crate::reading::words::text;
 use crate::told::side::{Side, is_on_foot};
 use crate::told::zones::side_of;
 use recrash_model::account::{
-    Account, Act, ActFact, ContactState, CrashType, Kind, LaneWord, LeftRight, Origin, Party, PlaceKind, RoadFeature,
-    Source, told,
+    Account, Act, ActFact, ContactState, CrashType, Kind, LaneWord, LeftRight, Origin, Other, Party, PlaceKind,
+    RoadFeature, Source, told,
 };
 use recrash_model::template::Movement;
 use recrash_model::zones::ContactZone;
@@ -67,6 +67,26 @@ pub(super) fn comes_over(origin: Origin, [sv, partner]: [&Party; 2], movement: O
         _ => false,
     };
     origin == Origin::Opposite && told
+}
+
+/// Whether an oncoming partner is told to go round another one that stands: "moved over to get around a stalled van".
+pub(super) fn goes_round_another(origin: Origin, account: &Account, partner: &Party) -> bool {
+    let stands = |fact: &ActFact| matches!(fact.act, Act::Hold | Act::Park | Act::Stop) && !fact.after_contact;
+    let named = |words: &str| {
+        let is = |other: &&Other| {
+            let kind = text(&other.kind.source);
+            let name = kind.split_whitespace().next_back();
+            name.is_some_and(|name| words.split_whitespace().any(|word| word == name))
+        };
+        let mut all = account.others.iter().filter(|other| !other.several && other.acts.iter().any(stands));
+        all.any(|other| is(&other))
+    };
+    let round = |words: &str| words.split_whitespace().any(|word| matches!(word, "around" | "round" | "past" | "by"));
+    let goes = |fact: &ActFact| {
+        let words = text(&fact.source);
+        fact.act == Act::Pass && !fact.after_contact && round(&words) && named(&words)
+    };
+    origin == Origin::Opposite && partner.acts.iter().any(goes)
 }
 
 /// How an oncoming partner moves that a column has on the wrong side, and words bring over there from a lane of its own.

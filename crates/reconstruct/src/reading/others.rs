@@ -47,12 +47,20 @@ pub(super) fn reasons(account: &Account, origin: Origin) -> Vec<StandReason> {
     let leads = account.sv.reasons.iter().any(leads);
     // "A construction worker" is somebody, and a construction truck is whom it stands behind.
     let works = said(StandReason::LeadVehicle) || said(StandReason::Pedestrian) && any(is_light);
+    // "second in line": one vehicle stands ahead, and no more.
+    let second =
+        |fact: &&Fact<StandReason>| fact.value == StandReason::Queue && text(&fact.source).contains("second in");
+    let one_ahead = account.sv.reasons.iter().any(|fact| second(&fact));
+    let told = told.map(|reason| match reason {
+        StandReason::Queue if one_ahead => StandReason::LeadVehicle,
+        reason => reason,
+    });
     told.filter(|reason| match reason {
         StandReason::Pedestrian => any(is_light),
         StandReason::Animal => any(|kind| kind.group() == KindGroup::Animal),
         StandReason::Yield => somebody || !explained,
         StandReason::BlockedPath => !works,
-        StandReason::LeadVehicle => leads,
+        StandReason::LeadVehicle => leads || one_ahead,
         _ => true,
     })
     .collect()
@@ -82,6 +90,12 @@ pub(super) fn pusher_stands(account: &Account) -> bool {
     before.is_some_and(|list| !list.is_empty() && list.into_iter().all(|stands| stands))
 }
 
+/// Whether who touched the partner first is told to have come fast.
+pub(super) fn pusher_fast(account: &Account) -> bool {
+    let touched = account.others.iter().find(|other| other.touched_partner);
+    touched.is_some_and(|other| before_contact(other).any(|fact| fact.manner == Some(Manner::Fast)))
+}
+
 /// Whether it is somebody on foot or on a cycle.
 fn is_light(kind: Kind) -> bool {
     matches!(kind.group(), KindGroup::OnFoot | KindGroup::Cyclist)
@@ -108,6 +122,8 @@ pub(super) fn wanted(told: &Told, account: &Account) -> Vec<Extra> {
                     near
                 }
             });
+            let crosses = matches!(told.origin, Origin::Cross { .. }) && story.is_passed_by_partner(other);
+            let near = near.map(|near| Near { place: near.place.or(Some(told.origin).filter(|_| crosses)), ..near });
             let hides = other.hides;
             near.map(|near| Extra { awaited, several, number, hides, ..Extra::near(near, at, kind) })
         };
@@ -241,7 +257,9 @@ fn is_heard(other: &Other) -> bool {
 /// Whether somebody who is told ahead is the nearest of traffic that stands there, which may be of any kind.
 fn is_of_queue(known: &Extra, other: &Other) -> bool {
     let ahead = other.place.as_ref().is_some_and(|fact| fact.value == Origin::Ahead);
-    known.role == Role::Lead && known.several && known.kind.partner_kind().is_none() && ahead && !other.several
+    // "Traffic ahead braked for a stalled bus": that is its head.
+    let head = text(&other.kind.source).contains("stalled");
+    known.role == Role::Lead && known.several && known.kind.partner_kind().is_none() && ahead && !other.several && !head
 }
 
 /// The same with those of whom only a reason to stand tells.
@@ -251,7 +269,7 @@ fn for_reasons(story: &Story<'_>, told: &Told, list: &mut Vec<Extra>) {
         list.push(Extra::of_reason(Role::Beyond));
     }
     // A queue that leaves no room behind a junction stands there.
-    let beyond = blocked && list.iter().any(|extra| extra.role == Role::Beyond);
+    let beyond = list.iter().any(|extra| extra.role == Role::Beyond);
     let waits = |reason: &StandReason| match reason {
         StandReason::Queue => !beyond,
         reason => *reason == StandReason::LeadVehicle,

@@ -92,6 +92,10 @@ fn backs_out(other: &Other) -> bool {
     out.is_some_and(is_space) && !parks_backwards(other)
 }
 
+/// Words for a place behind the junction.
+const FAR_SIDE: [&str; 4] =
+    ["across the intersection", "beyond the intersection", "past the intersection", "far side of the intersection"];
+
 /// Words for one that stands in a lane.
 const IN_LANE: [&str; 6] = ["in-lane", "in lane", "in the lane", "in its lane", "double-parked", "double parked"];
 
@@ -344,6 +348,23 @@ impl Story<'_> {
         told.comes_over || at_kerb && self.account.partner.as_ref().is_some_and(|party| party.acts.iter().any(passes))
     }
 
+    /// Whether the words for what the partner did name somebody as whom it went round: "pulled out around the taxi".
+    fn is_gone_round(&self, other: &Other) -> bool {
+        let partner = self.account.partner.iter().flat_map(|partner| &partner.acts);
+        let mut passes = partner.filter(|fact| fact.act == Act::Pass && !fact.after_contact);
+        passes.any(|fact| self.is_called(other, &text(&fact.source)))
+    }
+
+    /// Whether somebody of whom no place is told is named right behind the words that the partner passed: "ran the light, passing ahead of a van
+    /// that had stopped for it", of a partner that crosses.
+    pub(super) fn is_passed_by_partner(&self, other: &Other) -> bool {
+        let partner = self.account.partner.iter().flat_map(|partner| &partner.acts);
+        let passes = |fact: &&ActFact| !fact.after_contact && text(&fact.source).starts_with("pass");
+        let mut ends = partner.filter(passes).filter_map(|fact| Some(span(&fact.source)?.1));
+        let named = span(&other.kind.source);
+        named.is_some_and(|(first, _)| ends.any(|end| (end..=end + GOES_OUT_WITHIN).contains(&first)))
+    }
+
     /// Whether a partner that comes across came out from behind somebody, or from between several, who are not told to drive or to be at a kerb.
     fn is_screen(&self, told: &Told, other: &Other) -> bool {
         let stays = before_contact(other).all(|fact| matches!(fact.act, Act::Hold | Act::Stop | Act::Park | Act::Slow));
@@ -533,7 +554,7 @@ impl Story<'_> {
         if self.is_reason_to_go_out(told, other) {
             return Some(Role::Passed);
         }
-        if stands && !other.several && !near && self.is_passed(told) {
+        if stands && !other.several && self.is_passed(told) && (!near || self.is_gone_round(other)) {
             return Some(Role::Passed);
         }
         if stands && !other.several && self.is_between(told, other) {
@@ -549,7 +570,8 @@ impl Story<'_> {
             let named_before = double && place.is_none() && self.is_named_before(other);
             // Who stands in the lane of those who come towards the ego is not in its way.
             let blocks = (near && (waits || double) || named_before) && place != Some(Origin::Opposite);
-            let round = goes_round(told) && told.thing.is_none_or(|thing| thing != other.kind.value);
+            let there = place != Some(Origin::Opposite) || self.passes_at(other).is_some();
+            let round = goes_round(told) && there && told.thing.is_none_or(|thing| thing != other.kind.value);
             return match (other.several, round && !self.keeps_to_kerb(told, other, place)) {
                 // A row of them that is double-parked in the lane towards the ego is at no kerb.
                 (true, _) if double && place == Some(Origin::Opposite) => None,
@@ -568,11 +590,14 @@ impl Story<'_> {
         if stands && !other.several && passed && told.sv_aside().is_some() {
             return Some(Role::Obstacle);
         }
+        // Nobody stands beside an ego that has come into the junction.
+        let enters = told.sv.enters() && told.sv.state == ContactState::Moving;
         // In the next lane, whether or not the ego slows as it goes by.
         let beside = matches!(place, Some(Origin::Beside { .. })) || place.is_none() && self.passes_at(other).is_some();
         if stands
             && beside
             && told.sv_aside().is_none()
+            && !enters
             && !self.is_back(other)
             && !did(&[Act::LaneChange, Act::Enter, Act::PullOut, Act::Drift])
         {
@@ -602,6 +627,8 @@ impl Story<'_> {
         let ahead = place == Some(Origin::Ahead) || said(&["lead", "preceding"]);
         let beside = matches!(place, Some(Origin::Beside { .. }));
         let across = matches!(place, Some(Origin::Cross { .. }));
+        // "Traffic in the through lane to its right" goes its way.
+        let alongside = beside && other.place.as_ref().is_some_and(|fact| text(&fact.source).contains("lane"));
         let crosses = said(&["cross", "bound traffic", "approaching traffic"]) || beside || across;
         let turns = told.sv.turning != Turning::No || because(StandReason::StopSign);
         let passes = turns && (because(StandReason::Yield) || did(&[Act::Follow]));
@@ -617,7 +644,8 @@ impl Story<'_> {
             told.sv.turning != Turning::No && said(&["cross"]) || across && (acts_not || did(&[Act::Follow]));
         let for_turn = for_turn && !because(StandReason::BlockedJunction);
         let waits = near || other.several && for_turn;
-        if waits && !ahead && !queue && other.several && (crosses || passes || because(StandReason::Yield)) {
+        let waits = waits && !ahead && !alongside && !queue;
+        if waits && other.several && (crosses || passes || because(StandReason::Yield)) {
             let turns_left =
                 told.sv.turning == Turning::Left && !because(StandReason::StopSign) && !said(&["cross"]) && !across;
             let junction = told.place == PlaceKind::Intersection || turns || said(&["cross"]) || across;
@@ -653,10 +681,18 @@ impl Story<'_> {
         if waits && because(StandReason::BlockedJunction) {
             return Some(Role::Beyond);
         }
+        // "a queue of stopped traffic across the junction".
+        let far = other.place.as_ref().is_some_and(|fact| {
+            let words = text(&fact.source);
+            FAR_SIDE.iter().any(|side| words.contains(side))
+        });
+        if waits && far && told.sv.turning == Turning::No && told.origin == Origin::Behind {
+            return Some(Role::Beyond);
+        }
         let waits = waits && !queue;
         // Who drives elsewhere does not stand ahead.
         let elsewhere = did(&[Act::Follow]) && !did(&[Act::Hold, Act::Stop]) && !ahead && !queue;
-        if waits && junction && elsewhere {
+        if waits && junction && elsewhere && !alongside {
             return Some(Role::Blocker);
         }
         if !(near && !beside || ahead && reacts) || leaves || elsewhere || place == Some(Origin::Behind) {
@@ -686,7 +722,8 @@ impl Story<'_> {
         let drives = did(&[Act::Follow]) && !did(&[Act::Hold, Act::Stop]) && !queue;
         match moves {
             true if slows => Some(Role::Slower),
-            true if drives => None,
+            // Of whom no deed is told, and for whom an ego that drives did nothing, nobody says that it stands.
+            true if drives || acts_not && !near && !queue && told.sv.turning == Turning::No => None,
             _ => Some(Role::Lead),
         }
     }

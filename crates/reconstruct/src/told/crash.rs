@@ -1,15 +1,16 @@
 //! An account, in the terms of a staging.
 
 use crate::told::choices::Choices;
+use crate::told::doing::Doing;
 use crate::told::layout::{Counted, Layout};
 use crate::told::lies::Lies;
-use crate::told::others::{Extra, Thrower};
+use crate::told::others::{Extra, Role, Thrower};
 use crate::told::phase::Phase;
 use crate::told::rig::Rig;
 use crate::told::side::{Side, Turning};
 use recrash_model::account::{
-    Astride, ContactState, Control, ControlDevice, CrashType, EarlierTouch, Kind, LeftRight, Obeyed, Origin, PlaceKind,
-    SignalState, StandReason, Striker,
+    Act, Astride, ContactState, Control, ControlDevice, CrashType, EarlierTouch, Kind, LeftRight, Obeyed, Origin,
+    PlaceKind, SignalState, StandReason, Striker,
 };
 use recrash_model::metrics::CheckKind;
 use recrash_model::narrative::FirstMover;
@@ -79,6 +80,8 @@ pub(crate) struct Told {
     pub(crate) touch: Option<EarlierTouch>,
     /// Who touched the partner first is told to stand: the partner ran into it.
     pub(crate) pusher_stands: bool,
+    /// It is told to have been fast.
+    pub(crate) pusher_fast: bool,
     /// Who was pushed is told to have come along or slowed, and not to have stood.
     pub(crate) pushed_rolling: bool,
     /// So many of the others are told to have touched the partner first.
@@ -208,14 +211,33 @@ impl Told {
         let red = |said: &Control| said.state == Some(SignalState::Red) && said.obeyed != Some(Obeyed::No);
         let moved_up = self.sv.phases.ends_with(&[Phase::Stands, Phase::Drives, Phase::Stands]);
         let creeps = self.sv.enters() && moved_up && self.sv.turning == Turning::No;
-        let right = self.sv.turning == Turning::Right && !self.sv.turns_later;
-        let turns = right && (self.layout.on_red || self.sv.state.stands() && !self.layout.light_changes);
+        // "stopped at the red light and, after cross traffic had cleared, turned right": at red, where nobody tells that it changed.
+        let lets_by = self.wanted.iter().any(|extra| extra.role == Role::Crosser);
+        let right = self.sv.turning == Turning::Right && (!self.sv.turns_later || lets_by);
+        let waits = (self.sv.state.stands() || lets_by) && !self.layout.light_changes;
+        let turns = right && (self.layout.on_red || waits);
         let how = match (turns, creeps) {
             (true, _) => Some(AtRed::Turns),
             (_, true) => Some(AtRed::Creeps),
             _ => None,
         };
         how.filter(|_| self.sv.control.as_ref().is_some_and(red))
+    }
+
+    /// Whether the ego is told last to have come to a stop at a light that turned yellow, and nobody who waited there set off for that.
+    pub(crate) fn stops_at_yellow(&self) -> bool {
+        let yellow = |said: Control| said.device == ControlDevice::Signal && said.state == Some(SignalState::Yellow);
+        let last = self.sv.acts.iter().rfind(|doing| doing.act != Act::Hold);
+        let stops = self.sv.state == ContactState::Stopped && last.is_some_and(Doing::comes_to_stand);
+        let behind = self.origin == Origin::Behind;
+        let waits = self.cp.stood_first || self.cp.state == ContactState::SettingOff || self.queued;
+        stops && behind && self.sv.control.is_some_and(yellow) && !waits
+    }
+
+    /// Whether a partner with no light of its own comes through the junction towards an ego that stands at its red one.
+    pub(crate) fn comes_through_red(&self) -> bool {
+        let drives = self.cp.state == ContactState::Moving && self.cp.control.is_none();
+        self.origin == Origin::Opposite && drives && self.sv.state == ContactState::Stopped
     }
 
     /// Whether a partner that enters traffic ahead of the ego, or beside it, is told to have come along there, and not to have stood.

@@ -239,6 +239,13 @@ impl Told {
     }
 }
 
+impl Told {
+    /// How fast somebody drives on a street there who is told to be fast. [m/s]
+    pub(crate) fn fast_mps(&self) -> f64 {
+        as_told(Some(Manner::Fast), 0.0, false, self.posted_mps)
+    }
+}
+
 /// Who is told to be slow is no faster than this: in a lot, a garage or a driveway, and elsewhere. [m/s]
 const SLOWLY_MPS: (f64, f64) = (2.0, 2.8);
 

@@ -10,7 +10,7 @@ use crate::frame::Frame;
 use crate::lexicon::{Relation, Sense};
 use crate::world::{Actor, SUBJECT};
 use fallback::{by_columns, by_side, zone_side};
-pub(super) use places::{side_named_at, side_of_road_of};
+pub(super) use places::{at_curb, on_side_street, side_named_at, side_of_road_of};
 use recrash_model::account::{
     Account, Act, ContactState, Fact, Kind, KindGroup, LaneWord, LeftRight, Origin, Source, told,
 };

@@ -116,7 +116,7 @@ pub(super) fn climbs(reading: &Reading<'_>, actor: Actor) -> Option<bool> {
 }
 
 /// Whether the words put somebody at the kerb.
-pub(super) fn at_curb(reading: &Reading<'_>, actor: Actor) -> bool {
+pub(crate) fn at_curb(reading: &Reading<'_>, actor: Actor) -> bool {
     let tokens = &reading.story.tokens;
     reading.before(actor).any(|(number, _)| {
         let (first, end) = reading.window(number);
@@ -125,7 +125,7 @@ pub(super) fn at_curb(reading: &Reading<'_>, actor: Actor) -> bool {
 }
 
 /// Whether the words put somebody on a road that crosses.
-pub(super) fn on_side_street(reading: &Reading<'_>, actor: Actor) -> bool {
+pub(crate) fn on_side_street(reading: &Reading<'_>, actor: Actor) -> bool {
     let tokens = &reading.story.tokens;
     reading.before(actor).any(|(number, frame)| {
         let (first, end) = reading.window(number);
