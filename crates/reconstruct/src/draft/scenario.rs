@@ -148,6 +148,9 @@ fn mission_stop(told: &Told, staging: &Staging) -> Vec<MissionStop> {
 /// Width of a driveway, and how far it reaches behind the kerb. [m]
 const DRIVEWAY_M: (f64, f64) = (7.0, 9.0);
 
+/// None reaches farther: no map has one that does. [m]
+const DEEPEST_M: f64 = 40.0;
+
 /// The driveway where a partner begins that comes out of one, beside the road that the ego is on.
 fn driveway(told: &Told, ground: &Ground, begins: &Place) -> Option<Driveway> {
     let Place::Plane { x_m, y_m, .. } = *begins else { return None };
@@ -155,6 +158,6 @@ fn driveway(told: &Told, ground: &Ground, begins: &Place) -> Option<Driveway> {
     let side = if y_m > 0.0 { Side::Left } else { Side::Right };
     // Who rolls out of it begins deep in it.
     let begins_m = y_m.abs() - ground.lane_edges_m[usize::from(y_m < 0.0)];
-    let depth_m = if told.rolls_out() { DRIVEWAY_M.1.max(begins_m) } else { DRIVEWAY_M.1 };
+    let depth_m = if told.rolls_out() { begins_m.clamp(DRIVEWAY_M.1, DEEPEST_M) } else { DRIVEWAY_M.1 };
     there.then(|| Driveway { side, s_m: x_m + ground.begins_m(), width_m: DRIVEWAY_M.0, depth_m })
 }

@@ -13,8 +13,8 @@ use crate::told::lies::Lies;
 use crate::told::side::Turning;
 use crate::told::times::CONTACT_S;
 use recrash_model::account::{
-    Account, Act, Astride, ContactState, CrashType, Fact, FirstContact, KindGroup, LaneLine, LeftRight, Origin,
-    PlaceKind, Source, Striker, Untold, told,
+    Account, Act, Astride, ContactState, CrashType, Fact, FirstContact, KindGroup, LaneLine, LaneWord, LeftRight,
+    Origin, PlaceKind, Source, Striker, Untold, told,
 };
 
 /// Who comes towards the ego partly in that one's lane is over the line between the directions; not who is over one between two of its own.
@@ -81,6 +81,11 @@ impl Told {
         let origin = origin.or(assumed_from).unwrap_or(Origin::Behind);
         cp.astride = partner.astride.as_ref().map(|over| over_from(over, origin));
         let layout = Layout::of(account, partner);
+        // A slip lane is the way of a right turn.
+        let slips = layout.slip_lane && origin == Origin::Behind && account.sv.controls.is_empty();
+        if slips && sv.turning == Turning::No && told(&account.sv.lane) != Some(LaneWord::Left) {
+            (sv.turning, sv.stopped_aside) = (Turning::Right, None);
+        }
         let comes_round = origin_told && origin::comes_round(origin, partner, cp.state, cp.movement);
         let right = Some(LeftRight::Right);
         let origin = match comes_round {
