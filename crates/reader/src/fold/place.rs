@@ -31,7 +31,7 @@ pub(crate) fn place(reading: &Reading<'_>) -> Place {
             }
         }
         kerbs(reading, &mut place, number, *sentence);
-        ways_off(reading, &mut place, number, *sentence);
+        ways_off(reading, &mut place, *sentence);
         at_junctions(reading, &mut place, number, *sentence);
         in_slip_lanes(reading, &mut place, number, *sentence);
         for (kind, at, length) in lexicon.places(words) {
@@ -196,18 +196,15 @@ fn leads_there(reading: &Reading<'_>, number: usize, (from, at): (usize, usize),
 const NEAR_TURN: usize = 12;
 
 /// "turned left into a parking lot", "a right turn into an alley", "was turning out of a driveway", "left a garage and turned right": each way off
-/// the street by which the subject vehicle turns, with the words for that, whatever of the kind was named before.
-fn ways_off(reading: &Reading<'_>, place: &mut Place, number: usize, sentence: Sentence) {
+/// the street by which somebody turns, with the words for that, whatever of the kind was named before.
+fn ways_off(reading: &Reading<'_>, place: &mut Place, sentence: Sentence) {
     let tokens = &reading.story.tokens[sentence.first..sentence.end];
     for (feature, at, length) in Lexicon::get().features(tokens) {
         let way = matches!(
             feature,
             RoadFeature::Driveway | RoadFeature::ParkingLot | RoadFeature::Garage | RoadFeature::Alley
         );
-        let turn = way.then(|| turns_off(tokens, at, at + length)).flatten();
-        if let Some((first, end)) =
-            turn.filter(|(first, _)| !is_told_of_another(reading, number, sentence.first + first))
-        {
+        if let Some((first, end)) = way.then(|| turns_off(tokens, at, at + length)).flatten() {
             place.features.push(reading.told(feature, sentence.first + first, sentence.first + end));
         }
     }

@@ -47,7 +47,8 @@ fn off_street(told: &Told) -> Option<&'static str> {
     match told.layout.off_street {
         _ if told.edge.is_some() => None,
         Some(OffStreet::Into) if exit(told).is_some() => exit(told),
-        Some(OffStreet::OutOf) if (exit(told).is_some() || crosses) && told.sv.lane.is_none() => Some(OWN),
+        Some(OffStreet::OutOf) if told.sv.lane.is_none() => Some(OWN),
+        _ if told.layout.cp_into && told.cp.turning != Turning::No => Some(left_by(told)).filter(|arm| *arm != OWN),
         _ if told.layout.cp_off_street && crosses && !is_on_foot(told.cp.kind) => partners(told),
         _ => None,
     }
@@ -98,19 +99,23 @@ fn is_used(told: &Told, arm: &'static str) -> bool {
 
 /// Whether the partner leaves by one of them; who comes out of a way off the street goes no farther than to that.
 fn goes_by(told: &Told, arm: &'static str) -> bool {
+    let straight = told.cp.turning == Turning::No;
+    // It follows the ego, or is beside it.
+    let with_ego = straight && partners(told).is_none();
+    let ends = straight && told.layout.cp_off_street;
+    left_by(told) == arm && !ends && !with_ego && told.cp.speed_mps > 0.0
+}
+
+/// The one by which the partner leaves.
+fn left_by(told: &Told) -> &'static str {
     let turns = match told.cp.turning {
-        Turning::No | Turning::Round => 0,
+        Turning::No | Turning::Round => 2,
         Turning::Left => 1,
         Turning::Right => 3,
     };
     // Clockwise, each seen from the next: who turns left out of the first comes to the second.
     let round = [OWN, LEFT, AHEAD, RIGHT];
-    let from = match partners(told) {
-        // It follows the ego, or is beside it.
-        None if turns == 0 => return false,
-        from => round.iter().position(|name| *name == from.unwrap_or(OWN)).unwrap_or(0),
-    };
-    let to = round[(from + if turns == 0 { 2 } else { turns }) % round.len()];
-    let ends = turns == 0 && told.layout.cp_off_street;
-    to == arm && !ends && told.cp.speed_mps > 0.0
+    let from = partners(told).unwrap_or(OWN);
+    let from = round.iter().position(|name| *name == from).unwrap_or(0);
+    round[(from + turns) % round.len()]
 }

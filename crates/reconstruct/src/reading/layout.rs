@@ -41,7 +41,8 @@ impl Layout {
             narrow: has(RoadFeature::NarrowStreet),
             one_way: has(RoadFeature::OneWay),
             stalls: has(RoadFeature::Stall),
-            off_street: account.place.features.iter().find_map(turns_off_street),
+            off_street: ways_off_street(account, partner, false),
+            cp_into: ways_off_street(account, partner, true) == Some(OffStreet::Into),
             cp_off_street: is_told_on(account, partner, &["alley", "driveway", "parking lot", "garage"]),
             at_junction: account.place.features.iter().any(is_at_junction),
             slip_lane: account.place.features.iter().any(is_in_slip_lane),
@@ -78,6 +79,25 @@ fn is_at_junction(feature: &Fact<RoadFeature>) -> bool {
     feature.value == RoadFeature::Intersection && at
 }
 
+/// How the ego, or the partner, is told to turn at a way off the street: what is told with nobody else's turn is the ego's.
+fn ways_off_street(account: &Account, partner: &Party, of_partner: bool) -> Option<OffStreet> {
+    let turns = |party: &Party| turn_spans(&party.acts);
+    let others: Vec<(usize, usize)> = account.others.iter().flat_map(|other| turn_spans(&other.acts)).collect();
+    let within = |spans: &[(usize, usize)], at: (usize, usize)| spans.iter().any(|span| span.0 < at.1 && at.0 < span.1);
+    let partners = turns(partner);
+    account.place.features.iter().find_map(|feature| {
+        let at = span(&feature.source)?;
+        let is_partners = within(&partners, at);
+        let here = if of_partner { is_partners } else { !is_partners && !within(&others, at) };
+        turns_off_street(feature).filter(|_| here)
+    })
+}
+
+/// Where the words for somebody's turns stand.
+fn turn_spans(acts: &[ActFact]) -> Vec<(usize, usize)> {
+    acts.iter().filter(|fact| fact.act == Act::Turn).filter_map(|fact| span(&fact.source)).collect()
+}
+
 /// Whether words tell that the ego was in a slip lane: "in the slip lane", not the name of that alone.
 fn is_in_slip_lane(feature: &Fact<RoadFeature>) -> bool {
     let words = text(&feature.source);
@@ -86,7 +106,7 @@ fn is_in_slip_lane(feature: &Fact<RoadFeature>) -> bool {
         && ["in ", "on ", "into "].iter().any(|lead| words.starts_with(lead))
 }
 
-/// How the ego turns by the words for a way off the street: "turned left into a parking lot", "turning right out of an alley".
+/// How somebody turns by the words for a way off the street: "turned left into a parking lot", "turning right out of an alley".
 fn turns_off_street(feature: &Fact<RoadFeature>) -> Option<OffStreet> {
     let words = text(&feature.source);
     let way = matches!(

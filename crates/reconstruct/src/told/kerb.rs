@@ -83,12 +83,14 @@ impl Told {
             && side_of(&self.sv.zones) == Some(1.0)
     }
 
-    /// Whether an ego that stood at the kerb set off straight on, and touches one that stands there ahead of it: both are beside the lanes.
+    /// Whether an ego that stood at the kerb sets off straight on, or did, and touches one that stands there ahead of it: it is beside the lanes.
     pub(crate) fn sets_off_at_kerb(&self) -> bool {
         let moves = matches!(self.sv.state, ContactState::Moving | ContactState::SettingOff) && self.sv.stood_first;
         let straight = self.sv.turning == Turning::No && self.sv_aside().is_none() && self.sv.lane.is_none();
         let ahead = self.origin == Origin::Ahead && self.stands_beside(false);
-        self.layout.sv.at_kerb && moves && straight && ahead
+        // Who has just set off has not left it.
+        let just = self.sv.state == ContactState::SettingOff && !self.layout.sv.in_lane;
+        self.layout.sv.at_kerb && straight && (just || moves && ahead)
     }
 
     /// Whether the ego went aside and stopped for one that comes towards it in a narrow street: it stays in its lane.

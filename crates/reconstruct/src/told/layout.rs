@@ -59,6 +59,8 @@ pub(crate) struct Layout {
     pub(crate) stalls: bool,
     /// The ego turns into a way off the street, or out of one.
     pub(crate) off_street: Option<OffStreet>,
+    /// The partner turns into one.
+    pub(crate) cp_into: bool,
     /// The partner comes along one that crosses: out of an alley.
     pub(crate) cp_off_street: bool,
     /// The ego is told to be at a junction.
