@@ -23,11 +23,17 @@ pub(crate) fn place(reading: &Reading<'_>) -> Place {
         }
         let words = &story.tokens[sentence.first..sentence.end];
         for (feature, at, length) in lexicon.features(words) {
-            if !place.features.iter().any(|known| known.value == feature) {
+            // "Through a narrow gap between two trucks" tells nothing of the street.
+            let of_gap = feature == RoadFeature::NarrowStreet
+                && words.get(at + length).is_some_and(|next| matches!(next.text.as_str(), "gap" | "space" | "margin"));
+            if !of_gap && !place.features.iter().any(|known| known.value == feature) {
                 place.features.push(reading.told(feature, sentence.first + at, sentence.first + at + length));
             }
         }
         kerbs(reading, &mut place, number, *sentence);
+        ways_off(reading, &mut place, *sentence);
+        at_junctions(reading, &mut place, number, *sentence);
+        in_slip_lanes(reading, &mut place, number, *sentence);
         for (kind, at, length) in lexicon.places(words) {
             // Somebody turns into it.
             let way_in = words.get(at + length).is_some_and(|next| WAYS_IN.contains(&next.text.as_str()));
@@ -39,13 +45,13 @@ pub(crate) fn place(reading: &Reading<'_>) -> Place {
                         "exited" | "exiting" | "exit" | "leaving" | "into" | "out" | "enter" | "entered" | "entrance"
                     )
                 });
-            let aside = way_in || way_out && kind == PlaceKind::Garage;
+            let aside = way_in || way_out && matches!(kind, PlaceKind::Garage | PlaceKind::Alley);
             // "A van traveling in an alley pulled out", "a van driving through a garage", told of one that drives along a street.
             let of_other = matches!(kind, PlaceKind::Alley | PlaceKind::Garage)
                 && is_told_of_another(reading, number, sentence.first + at);
             if place.kind.is_none()
                 && !(of_other && column_is_road(reading))
-                && !(aside && matches!(kind, PlaceKind::Garage | PlaceKind::ParkingLot))
+                && !(aside && matches!(kind, PlaceKind::Garage | PlaceKind::ParkingLot | PlaceKind::Alley))
             {
                 place.kind = Some(reading.told(kind, sentence.first + at, sentence.first + at + length));
             }
@@ -134,15 +140,115 @@ fn leads_to_kerb(tokens: &[Token], from: usize, curb: usize) -> Option<usize> {
     (!lane && at >= from && TO_KERB.contains(&word(at))).then_some(at)
 }
 
+/// Words that lead to a junction at which somebody is, and those of who is elsewhere: "near the intersection", "after the intersection".
+const AT_JUNCTION: [&str; 8] = ["at", "for", "approach", "approached", "approaching", "reached", "reaching", "towards"];
+const OFF_JUNCTION: [&str; 15] = [
+    "near",
+    "after",
+    "following",
+    "pass",
+    "passed",
+    "passing",
+    "past",
+    "through",
+    "of",
+    "before",
+    "beyond",
+    "from",
+    "behind",
+    "entered",
+    "between",
+];
+
+/// "in a queue of traffic at the intersection", "as it approached the junction": each junction at which the subject vehicle is told to be.
+fn at_junctions(reading: &Reading<'_>, place: &mut Place, number: usize, sentence: Sentence) {
+    let word = |at: usize| reading.story.tokens[at].text.as_str();
+    let named = |at: &usize| matches!(word(*at), "intersection" | "junction" | "t-intersection" | "t-junction");
+    for at in (sentence.first..sentence.end).filter(named) {
+        if let Some(lead) = leads_there(reading, number, (sentence.first, at), &AT_JUNCTION) {
+            place.features.push(reading.told(RoadFeature::Intersection, lead, at + 1));
+        }
+    }
+}
+
+/// "was stopped in the right turn slip lane": each slip lane in which the subject vehicle is told to be.
+fn in_slip_lanes(reading: &Reading<'_>, place: &mut Place, number: usize, sentence: Sentence) {
+    let word = |at: usize| reading.story.tokens.get(at).map_or("", |token| token.text.as_str());
+    for at in (sentence.first..sentence.end).filter(|at| matches!(word(*at), "slip" | "channelized")) {
+        let lane = (at + 1..at + 5).find(|at| word(*at) == "lane");
+        let lead = leads_there(reading, number, (sentence.first, at), &["in", "on", "into"]);
+        if let Some((lane, lead)) = lane.zip(lead) {
+            place.features.push(reading.told(RoadFeature::Merge, lead, lane + 1));
+        }
+    }
+}
+
+/// The token of the words before a place that lead the subject vehicle there: of those that lead elsewhere too the last.
+fn leads_there(reading: &Reading<'_>, number: usize, (from, at): (usize, usize), leads: &[&str]) -> Option<usize> {
+    let word = |at: usize| reading.story.tokens[at].text.as_str();
+    let before = (at.saturating_sub(6).max(from)..at).rev().take_while(|at| word(*at) != ",");
+    let tells = |at: &usize| leads.contains(&word(*at)) || OFF_JUNCTION.contains(&word(*at));
+    let lead = before.into_iter().find(tells)?;
+    (leads.contains(&word(lead)) && !is_told_of_another(reading, number, lead)).then_some(lead)
+}
+
+/// So many words lie between a turn and the way off the street at which it is made, at most. [tokens]
+const NEAR_TURN: usize = 12;
+
+/// "turned left into a parking lot", "a right turn into an alley", "was turning out of a driveway", "left a garage and turned right": each way off
+/// the street by which somebody turns, with the words for that, whatever of the kind was named before.
+fn ways_off(reading: &Reading<'_>, place: &mut Place, sentence: Sentence) {
+    let tokens = &reading.story.tokens[sentence.first..sentence.end];
+    for (feature, at, length) in Lexicon::get().features(tokens) {
+        let way = matches!(
+            feature,
+            RoadFeature::Driveway | RoadFeature::ParkingLot | RoadFeature::Garage | RoadFeature::Alley
+        );
+        if let Some((first, end)) = way.then(|| turns_off(tokens, at, at + length)).flatten() {
+            place.features.push(reading.told(feature, sentence.first + first, sentence.first + end));
+        }
+    }
+}
+
+/// The words from a turn to the way off the street into which it leads, or out of which; or from that to the turn behind it.
+fn turns_off(tokens: &[Token], at: usize, end: usize) -> Option<(usize, usize)> {
+    let word = |at: usize| tokens.get(at).map_or("", |token| token.text.as_str());
+    let turns =
+        |at: &usize| matches!(word(*at), "turn" | "turns" | "turned" | "turning") && (*at == 0 || word(*at - 1) != "-");
+    let leaves = |at: usize| matches!(word(at), "exit" | "exited" | "exiting" | "left" | "leaving");
+    let leads =
+        |at: usize| matches!(word(at), "into" | "toward" | "towards" | "from") || leaves(at) && word(at) != "left";
+    let out = |at: usize| word(at) == "out" && word(at + 1) == "of";
+    let same_clause = |at: &usize| !matches!(word(*at), "," | ";" | "when" | "while" | "as");
+    let before = (at.saturating_sub(NEAR_TURN)..at).rev().take_while(same_clause).find(turns);
+    if let Some(first) = before.filter(|first| (*first..at).any(|at| leads(at) || out(at))) {
+        return Some((first, end));
+    }
+    let first = (at.saturating_sub(5)..at).rev().take_while(same_clause).find(|at| leaves(*at))?;
+    let last = (end..end + 4).take_while(|at| word(*at) != ".").find(turns)?;
+    Some((first, last + 1))
+}
+
 /// Sentences behind the one of the contact tell of where they drove then.
 fn is_after(reading: &Reading<'_>, token: usize) -> bool {
     token >= reading.until()
+}
+
+/// "a T-intersection", "the T junction": three roads meet.
+fn is_tee(tokens: &[Token], at: usize) -> bool {
+    let word = |ahead: usize| tokens.get(at + ahead).map_or("", |token| token.text.as_str());
+    let joined = matches!(word(0), "t-intersection" | "t-junction");
+    let behind = if word(1) == "-" { word(2) } else { word(1) };
+    joined || matches!(word(0), "t" | "tee") && matches!(behind, "intersection" | "junction")
 }
 
 /// "the left of two lanes", "a two-lane road", "4-way".
 fn lanes(reading: &Reading<'_>, place: &mut Place, first: usize, end: usize) {
     let tokens = &reading.story.tokens;
     for at in first..end {
+        if place.arms.is_none() && is_tee(tokens, at) {
+            place.arms = Some(reading.told(3, at, at + 1));
+        }
         // "in the single lane".
         let word = |ahead: usize| tokens.get(at + ahead).map_or("", |token| token.text.as_str());
         // "a single lane change", "a single lane of traffic" tell nothing of the road.

@@ -3,6 +3,7 @@
 use crate::draft::signals;
 use crate::ego::pace::ego_paces;
 use crate::ego::plan::{GOES_ON_S, ROLLS_S, ego_plan};
+use crate::ground::pieces::corner_m;
 use crate::ground::way::Ground;
 use crate::others::actors;
 use crate::pace::plain::{first_time, when};
@@ -148,13 +149,21 @@ fn mission_stop(told: &Told, staging: &Staging) -> Vec<MissionStop> {
 /// Width of a driveway, and how far it reaches behind the kerb. [m]
 const DRIVEWAY_M: (f64, f64) = (7.0, 9.0);
 
+/// None reaches farther: no map has one that does. [m]
+const DEEPEST_M: f64 = 40.0;
+
 /// The driveway where a partner begins that comes out of one, beside the road that the ego is on.
 fn driveway(told: &Told, ground: &Ground, begins: &Place) -> Option<Driveway> {
     let Place::Plane { x_m, y_m, .. } = *begins else { return None };
-    let there = matches!(told.origin, Origin::Driveway { .. }) && !ground.junction && told.place != PlaceKind::Highway;
-    let side = if y_m > 0.0 { Side::Left } else { Side::Right };
+    let there = matches!(told.origin, Origin::Driveway { .. }) && told.place != PlaceKind::Highway;
+    // The line of a road before a junction begins at that, and leads away from it.
+    let (left, s_m) = match ground.junction {
+        true => (y_m < 0.0, -x_m - corner_m(ground.lanes)),
+        false => (y_m > 0.0, x_m + ground.begins_m()),
+    };
+    let (side, there) = (if left { Side::Left } else { Side::Right }, there && s_m > 0.5 * DRIVEWAY_M.0);
     // Who rolls out of it begins deep in it.
     let begins_m = y_m.abs() - ground.lane_edges_m[usize::from(y_m < 0.0)];
-    let depth_m = if told.rolls_out() { DRIVEWAY_M.1.max(begins_m) } else { DRIVEWAY_M.1 };
-    there.then(|| Driveway { side, s_m: x_m + ground.begins_m(), width_m: DRIVEWAY_M.0, depth_m })
+    let depth_m = if told.rolls_out() { begins_m.clamp(DRIVEWAY_M.1, DEEPEST_M) } else { DRIVEWAY_M.1 };
+    there.then_some(Driveway { side, s_m, width_m: DRIVEWAY_M.0, depth_m })
 }

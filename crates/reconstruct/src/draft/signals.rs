@@ -57,7 +57,7 @@ pub(crate) fn devices(told: &Told, ground: &Ground, ego: &ActorPlan, actors: &[A
     // Nobody comes to a line of a street that is one-way.
     let leads_in = |arm: &str| {
         let road = ground.map.roads.iter().find(|road| arm.strip_suffix('-') == Some(road.id.as_str()));
-        road.is_none_or(|road| road.left.iter().any(|strip| strip.kind == StripKind::Driving))
+        road.is_some_and(|road| road.left.iter().any(|strip| strip.kind == StripKind::Driving))
     };
     let mut list: Vec<Control> = Vec::new();
     for (arm, _, said) in said.iter().flatten() {

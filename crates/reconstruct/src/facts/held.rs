@@ -8,7 +8,7 @@ use crate::facts::contact::{
 use crate::facts::junction::Junction;
 use crate::facts::lane::{lane, lane_words};
 use crate::facts::movement::{self, Way};
-use crate::facts::origin::{comes_by_lane, origin, origin_words};
+use crate::facts::origin::{begins_elsewhere, comes_by_lane, origin, origin_words};
 use crate::facts::seen::Seen;
 use crate::facts::state::{changed, stands_at_stop, state, stood};
 use crate::facts::strays::until_touched;
@@ -346,6 +346,9 @@ impl<'a> Crash<'a> {
         let (shown, observed) = origin(told, self.ego_track, track, touch.time_s);
         if comes_by_lane(told, self.scenario, track, touch.time_s) {
             return Some(check(kind, false, origin_words(told), observed + ", along a lane"));
+        }
+        if begins_elsewhere(told, self.scenario, track) {
+            return Some(check(kind, false, origin_words(told), observed + ", beside the place"));
         }
         Some(check(kind, shown, origin_words(told), observed))
     }

@@ -8,6 +8,7 @@ use recrash_model::account::{ContactState, CrashType, LeftRight, Origin};
 use recrash_model::geometry::Vec2;
 use recrash_model::math;
 use recrash_model::rollout::{ActorState, ActorTrack};
+use recrash_model::scenario::StripKind;
 use recrash_model::template::Movement;
 use recrash_roads::{RoadPart, Scenario};
 
@@ -140,6 +141,28 @@ pub(super) fn comes_by_lane(told: &Told, scenario: &Scenario, other: &ActorTrack
         })
     };
     told.crosses_at_walk() && other.states[..=until].iter().step_by(10).any(along)
+}
+
+/// Who is longer than this has no room in a driveway. [m]
+const LONG_M: f64 = 7.0;
+
+/// Whether who comes out of a stall or a driveway began beside the one that is drawn for it.
+pub(super) fn begins_elsewhere(told: &Told, scenario: &Scenario, other: &ActorTrack) -> bool {
+    let (network, first) = (scenario.network(), other.states[0]);
+    let comes_out = told.stood_beside() || told.backs_out();
+    match told.origin {
+        Origin::Stall { .. } if comes_out => {
+            let stalls =
+                |lane: &recrash_roads::Lane| network.road(lane.road).part == RoadPart::Beside(StripKind::Stalls);
+            let mut rows = network.lanes.iter().filter(|lane| stalls(lane)).peekable();
+            rows.peek().is_some() && !rows.any(|lane| lane.contains(first.position()))
+        }
+        Origin::Driveway { .. } if comes_out && other.length_m < LONG_M => {
+            let mut drives = network.areas.iter().filter(|area| area.name.contains(".driveways[")).peekable();
+            drives.peek().is_some() && !drives.any(|area| area.contains(first.position()))
+        }
+        _ => false,
+    }
 }
 
 /// Whether somebody overlaps the ego across its way at a step.

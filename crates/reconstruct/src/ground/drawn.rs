@@ -2,14 +2,14 @@
 
 use crate::ground::junction::junction;
 use crate::ground::lanes::{has, is_one_way, lanes_for, told_lane, usual_lane};
-use crate::ground::pieces::{APPROACH_M, behind_median, straight, strips};
+use crate::ground::pieces::{APPROACH_M, behind_median, straight, strips, strips_of};
 use crate::ground::way::{Across, Ground, with_way};
 use crate::told::crash::Told;
 use crate::told::lies::Lies;
 use crate::told::others::Role;
 use crate::told::side::{Turning, size_of};
 use crate::usual::LANE_M;
-use recrash_model::account::{LeftRight, Origin, PlaceKind};
+use recrash_model::account::{ContactState, LeftRight, Origin, PlaceKind};
 use recrash_model::kinds::PartnerKind;
 use recrash_model::scenario::{GraphMap, RoadStart, Strip, StripKind};
 use recrash_model::template::Movement;
@@ -18,19 +18,22 @@ use recrash_model::template::Movement;
 pub(crate) fn ground_for(told: &Told) -> Ground {
     let crossing = matches!(told.origin, Origin::Cross { .. }) && !told.crosses_street() && !told.backs_across()
         || told.sv.turning != Turning::No && told.sv.turning != Turning::Round
-        || told.cp.turning != Turning::No && !told.turns_round_in_street();
+        || told.cp.turning != Turning::No
+            && !told.turns_round_in_street()
+            && (!told.comes_off_drive() || told.crossed_near);
     // Aisles cross where somebody turns.
     let turns = |turning: Turning| matches!(turning, Turning::Left | Turning::Right);
     let lot = matches!(told.place, PlaceKind::ParkingLot | PlaceKind::Garage | PlaceKind::Driveway | PlaceKind::Alley)
         && !turns(told.sv.turning)
         && !(turns(told.cp.turning) && matches!(told.origin, Origin::Cross { .. }) && told.comes_along_lanes());
-    let controlled = told.is_controlled() && told.place != PlaceKind::Highway;
+    let controlled = told.is_controlled() && told.place != PlaceKind::Highway && !told.comes_off_drive();
     // Who gives way to crossing traffic, or keeps a junction clear, is at one.
     let at_one = [Role::Crosser, Role::Blocker, Role::Beyond].into_iter().any(|role| has(told, role));
     let gives_way = told.place != PlaceKind::Highway && (at_one || told.crossed_near);
     let entered = told.place != PlaceKind::Highway && (told.enters() || told.is_followed_in());
     let to_come = told.waits_to_turn_left() && matches!(told.origin, Origin::Behind | Origin::Opposite);
-    if (crossing || controlled || gives_way || entered || to_come) && !lot || told.place == PlaceKind::Intersection {
+    let ahead = told.stops_before_junction() || to_come;
+    if (crossing || controlled || gives_way || entered || ahead) && !lot || told.place == PlaceKind::Intersection {
         let ground = junction(told, crossing);
         let behind_m: &[f64] = match (told.edge, told.lies) {
             (Some(_), _) => &BEHIND_ENTRY_M,
@@ -45,31 +48,35 @@ pub(crate) fn ground_for(told: &Told) -> Ground {
     let one_way = is_one_way(told);
     let one_sided = one_way || told.keeps_one_way() || told.edge == Some(LeftRight::Left) && !told.edge_is_median();
     let oncoming = if one_sided || told.place == PlaceKind::Highway && !told.is_met_on_highway() { 0 } else { 1 };
+    let lane_m = if told.layout.narrow && told.edge.is_none() { NARROW_LANE_M } else { LANE_M };
     let (right, left) = match told.place {
         _ if let Some(side) = told.edge => beside_edge(told, side, lot, oncoming),
         PlaceKind::Highway => {
             let beside = told.beside_lanes(&[StripKind::Shoulder]);
             (strips(lanes_for(told, 3), &beside), if oncoming == 0 { Vec::new() } else { strips(oncoming, &beside) })
         }
-        _ if lot => (strips(lanes_for(told, 1), &[StripKind::Stalls]), strips(oncoming, &[StripKind::Stalls])),
+        _ if lot => {
+            let beside = [told.beside_aisle()];
+            (strips_of(lane_m, lanes_for(told, 1), &beside), strips_of(lane_m, oncoming, &beside))
+        }
         _ => {
             let stalls = matches!(told.origin, Origin::Stall { .. });
             let usual = [if stalls { StripKind::Stalls } else { StripKind::Parking }, StripKind::Sidewalk];
             let beside = told.beside_lanes(&usual);
-            (strips(lanes_for(told, 2), &beside), strips(oncoming, &beside))
+            (strips_of(lane_m, lanes_for(told, 2), &beside), strips_of(lane_m, oncoming, &beside))
         }
     };
     let lanes = right.iter().filter(|strip| strip.kind == StripKind::Driving).count();
     let beside = right.iter().map(|strip| strip.kind).filter(|kind| *kind != StripKind::Driving).collect();
     let usual = usual_lane(told, lanes, one_way);
     let lane = told_lane(told, lanes).unwrap_or(usual);
-    let start = RoadStart::At { x_m: -APPROACH_M, y_m: (lane as f64 + 0.5) * LANE_M, heading_deg: 0.0 };
+    let start = RoadStart::At { x_m: -APPROACH_M, y_m: (lane as f64 + 0.5) * lane_m, heading_deg: 0.0 };
     let map = GraphMap {
         roads: vec![straight("main", start, 2.0 * APPROACH_M, right, left)],
         junctions: Vec::new(),
         areas: Vec::new(),
     };
-    let across = Across { lanes, lane, oncoming, beside };
+    let across = Across { lanes, lane, oncoming, beside, cross_lanes: lanes, lane_m };
     let ground = with_way(map, vec!["main+".to_owned()], across, vec![APPROACH_M], false);
     let at_kerb =
         (told.is_at_kerb() || told.sets_off_at_kerb()) && !lot && told.place != PlaceKind::Highway && !one_way;
@@ -80,6 +87,9 @@ pub(crate) fn ground_for(told: &Told) -> Ground {
 /// From where the road begins that the ego turns into to the ego's front, where it meets what stands at the edge of that road, or across
 /// it. [m]
 const BEHIND_ENTRY_M: [f64; 3] = [3.0, 5.0, 8.0];
+
+/// How wide a lane of a narrow street is. [m]
+const NARROW_LANE_M: f64 = 2.7;
 
 /// Strips of a road at whose edge something stands.
 fn beside_edge(told: &Told, side: LeftRight, lot: bool, oncoming: usize) -> (Vec<Strip>, Vec<Strip>) {
@@ -106,6 +116,20 @@ impl Told {
     fn turns_round_in_street(&self) -> bool {
         let crosses = matches!(self.origin, Origin::Cross { .. } | Origin::Opposite);
         self.cp.turning == Turning::Round && self.place == PlaceKind::Street && !crosses
+    }
+
+    /// Whether the ego is told to stop, or to slow, at a junction, and meets one that goes its way.
+    fn stops_before_junction(&self) -> bool {
+        let along = matches!(self.origin, Origin::Behind | Origin::Ahead | Origin::Beside { .. });
+        let stops = self.sv.state == ContactState::Stopped || self.sv.slowed_from.is_some();
+        let plain = self.thing.is_none() && self.edge.is_none() && self.sv.turning == Turning::No && !self.is_at_kerb();
+        self.layout.at_junction && self.place == PlaceKind::Street && along && stops && plain
+    }
+
+    /// What lies beside an aisle of a lot, or an alley: that has no stalls, but where somebody stands in one or comes out of it.
+    fn beside_aisle(&self) -> StripKind {
+        let stalls = matches!(self.origin, Origin::Stall { .. } | Origin::Parked { .. }) || self.layout.stalls;
+        if self.place == PlaceKind::Alley && !stalls { StripKind::Shoulder } else { StripKind::Stalls }
     }
 
     /// Whether the partner crosses a street on foot, as an animal, or as a rider that does what walkers do, where no road crosses it; or a highway.

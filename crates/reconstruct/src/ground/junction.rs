@@ -1,5 +1,6 @@
 //! A junction of four arms, and where on it the ego may be at the contact.
 
+use crate::ground::arms::{AHEAD, Arms, LEFT, OWN, RIGHT};
 use crate::ground::lanes::{has, is_one_way, lanes_for, told_lane, usual_lane};
 use crate::ground::pieces::{APPROACH_M, behind_median, corner_m, straight, strips};
 use crate::ground::way::{Across, Ground, with_way};
@@ -9,9 +10,9 @@ use crate::told::others::Role;
 use crate::told::side::{Turning, size_of};
 use crate::told::{queue, sizes};
 use crate::usual::{LANE_M, LEAD_GAP_M, ROOM_M};
-use recrash_model::account::{ContactState, LeftRight, Origin, StandReason};
+use recrash_model::account::{ContactState, LeftRight, Origin, PlaceKind, StandReason};
 use recrash_model::kinds::PartnerKind;
-use recrash_model::scenario::{GraphMap, JunctionSpec, RoadStart, StripKind};
+use recrash_model::scenario::{GraphMap, JunctionSpec, RoadSpec, RoadStart, StripKind};
 use recrash_model::template::Movement;
 use recrash_model::vehicle::VehicleSpec;
 
@@ -45,7 +46,10 @@ fn queue_m(told: &Told) -> Option<f64> {
     let stands_m = 0.5 * size_of(&told.sv).0 + ahead * (LEAD_GAP_M + long_m) + aside_m + FIRST_AT_LINE_M;
     // Who has set off behind it has come nearer to the line.
     let came_m = 0.5 * told.sv.speed_mps * told.sv.speed_mps / CAME_MPS2;
-    Some(if queue::sets_off(told) { stands_m - came_m } else { stands_m })
+    // Who slows for it has yet to come to its stand.
+    let slows = told.sv.state == ContactState::Moving && told.sv.slowed_from.is_some();
+    let yet_m = if slows { 0.5 * told.sv.speed_mps * told.sv.speed_mps / BRAKES_MPS2 } else { 0.0 };
+    Some(if queue::sets_off(told) { stands_m - came_m } else { stands_m + yet_m })
 }
 
 /// Who is no longer than this has room between the ego and the stop line. [m]
@@ -59,6 +63,9 @@ const FIRST_AT_LINE_M: f64 = 0.6;
 
 /// No ego that sets off behind it comes nearer to the line by more than with this. [m/s^2]
 const CAME_MPS2: f64 = 2.0;
+
+/// An ego that has yet to stop behind it brakes with this, once it is hit. [m/s^2]
+const BRAKES_MPS2: f64 = 5.0;
 
 /// Who stands first at a signal stands so far before its line, and sets off from there for so long, for so far at least and at most.
 /// [m, s, m]
@@ -83,12 +90,14 @@ const BEYOND_M: [f64; 3] = [4.0, 10.0, 2.0];
 
 /// Four arms; the ego comes along the one that lies behind it.
 pub(super) fn junction(told: &Told, crossing: bool) -> Ground {
-    let lanes = lanes_for(told, 2);
+    let aisles = matches!(told.place, PlaceKind::ParkingLot | PlaceKind::Garage) && told.layout.off_street.is_none();
+    let arms = Arms::of(told, lanes_for(told, if aisles { 1 } else { 2 }));
+    let (lanes, cross_lanes) = (arms.lanes, arms.cross_lanes);
     let corner_m = corner_m(lanes);
     let exits_by = match told.sv.turning {
-        Turning::Left => "left",
-        Turning::Right => "right",
-        Turning::No | Turning::Round => "own",
+        Turning::Left => LEFT,
+        Turning::Right => RIGHT,
+        Turning::No | Turning::Round => OWN,
     };
     let one_way = is_one_way(told);
     let at_kerb =
@@ -102,14 +111,14 @@ pub(super) fn junction(told: &Told, crossing: bool) -> Ground {
     // Stalls leave no room for more between the arms.
     let stalls = matches!(told.origin, Origin::Stall { .. }) && told.strip().is_none();
     let usual: &[StripKind] = match parks {
-        true if stalls => &[StripKind::Stalls],
+        _ if aisles || parks && stalls => &[StripKind::Stalls],
         true => &[StripKind::Parking, StripKind::Sidewalk],
         false => &[StripKind::Sidewalk],
     };
     // Of the partner's road, on both sides of the junction.
     let beside = told.beside_lanes(usual);
     let crosses = matches!(told.origin, Origin::Cross { .. });
-    let along = if crosses { ["left", "right"] } else { ["own", "ahead"] };
+    let along = if crosses { [LEFT, RIGHT] } else { [OWN, AHEAD] };
     let usual_strips = |id: &str| if along.contains(&id) { beside.as_slice() } else { usual };
     // Nobody comes towards an ego that has others parked on its left.
     let alone = one_way && told.sv.turning == Turning::No && !has(told, Role::Oncoming);
@@ -118,36 +127,44 @@ pub(super) fn junction(told: &Told, crossing: bool) -> Ground {
     let one_sided = alone || told_so;
     let arm = |id: &str, bearing_deg: f64, length_m: f64| {
         let start = RoadStart::Arm { junction: "j".to_owned(), bearing_deg, from_m: corner_m };
-        let usual = || strips(lanes, usual_strips(id));
+        let off_street = arms.off_street == Some(id);
+        let lanes = match id {
+            _ if off_street => 1,
+            OWN | AHEAD => lanes,
+            _ => arms.street,
+        };
+        let usual = || strips(lanes, if off_street { &[] } else { usual_strips(id) });
         let (away, towards) = match told.edge.filter(|_| id == exits_by) {
-            Some(LeftRight::Right) if id == "own" => (usual(), strips(lanes, &told.beside_edge())),
-            Some(LeftRight::Left) if id == "own" => (behind_median(usual()), usual()),
+            Some(LeftRight::Right) if id == OWN => (usual(), strips(lanes, &told.beside_edge())),
+            Some(LeftRight::Left) if id == OWN => (behind_median(usual()), usual()),
             Some(LeftRight::Right) => (strips(lanes, &told.beside_edge()), usual()),
             Some(LeftRight::Left) => (usual(), behind_median(usual())),
-            None if one_sided && id == "own" => (strips(0, usual_strips(id)), usual()),
-            None if one_sided && id == "ahead" => (usual(), strips(0, usual_strips(id))),
+            None if one_sided && id == OWN => (strips(0, usual_strips(id)), usual()),
+            None if one_sided && id == AHEAD => (usual(), strips(0, usual_strips(id))),
             None => (usual(), usual()),
         };
         straight(id, start, length_m, away, towards)
     };
     let (exit, lane) = match told.sv.turning {
-        Turning::Left => {
-            ("left+", told_lane(told, lanes).unwrap_or(usize::from(told.lets_by_on_left()).min(lanes - 1)))
-        }
-        Turning::Right => ("right+", told_lane(told, lanes).unwrap_or(lanes - 1)),
+        Turning::Left => (LEFT, told_lane(told, lanes).unwrap_or(usize::from(told.lets_by_on_left()).min(lanes - 1))),
+        Turning::Right => (RIGHT, told_lane(told, lanes).unwrap_or(lanes - 1)),
         Turning::No | Turning::Round => {
             let usual = if at_kerb { lanes - 1 } else { usual_lane(told, lanes, one_way) };
-            ("ahead+", told_lane(told, lanes).unwrap_or(usual))
+            (AHEAD, told_lane(told, lanes).unwrap_or(usual))
         }
     };
     // The ego's lane lies on the x axis, or beside it.
     let centre_y = (lanes as f64 - 0.5) * LANE_M;
-    let [own, ahead] = [arm("own", 180.0, APPROACH_M), arm("ahead", 0.0, APPROACH_M)];
-    let sides = [arm("left", 90.0, APPROACH_M), arm("right", 270.0, APPROACH_M)];
+    let [own, ahead] = [arm(OWN, 180.0, APPROACH_M), arm(AHEAD, 0.0, APPROACH_M)];
+    let sides = [arm(LEFT, 90.0, APPROACH_M), arm(RIGHT, 270.0, APPROACH_M)];
     // The first road of a map has lanes in its own direction.
     let along = if one_sided { [ahead, own] } else { [own, ahead] };
+    let roads = along.into_iter().chain(sides).filter(|road| arms.missing != Some(road.id.as_str()));
+    // Into one of which nobody is told to come.
+    let exit_name = if arms.off_street == Some(exit) && !crosses { "driveway" } else { exit };
+    let named = |road: RoadSpec| RoadSpec { id: if road.id == exit { exit_name.to_owned() } else { road.id }, ..road };
     let map = GraphMap {
-        roads: along.into_iter().chain(sides).collect(),
+        roads: roads.map(named).collect(),
         junctions: vec![JunctionSpec {
             id: "j".to_owned(),
             x_m: 0.0,
@@ -225,8 +242,15 @@ pub(super) fn junction(told: &Told, crossing: bool) -> Ground {
         }
     };
     let beside = if crosses { usual.to_vec() } else { beside };
-    let across = Across { lanes, lane, oncoming: if one_way || one_sided { 0 } else { lanes }, beside };
-    let ground = with_way(map, vec!["own-".to_owned(), exit.to_owned()], across, places, true);
+    let across = Across {
+        lanes,
+        lane,
+        oncoming: if one_way || one_sided { 0 } else { lanes },
+        beside,
+        cross_lanes,
+        lane_m: LANE_M,
+    };
+    let ground = with_way(map, vec!["own-".to_owned(), format!("{exit_name}+")], across, places, true);
     let ground = if at_line.is_empty() { ground.at_walk(told) } else { ground };
     let ground = if at_kerb { ground.at_kerb() } else { ground }.over_line(told);
     if told.sv.turned { ground.after_turn() } else { ground }

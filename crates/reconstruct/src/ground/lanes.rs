@@ -39,7 +39,8 @@ pub(super) fn lanes_for(told: &Told, usual: usize) -> usize {
         told.origin,
         Origin::Stall { side: Some(LeftRight::Left) } | Origin::Driveway { side: Some(LeftRight::Left) }
     );
-    let usual = if from_left && told.backs_out() || told.layout.narrow { 1 } else { usual };
+    let comes_out = told.backs_out() || told.comes_off_drive() && told.cp.turning != Turning::No;
+    let usual = if from_left && comes_out || told.layout.narrow { 1 } else { usual };
     // The lane by whose edge something stands is the only one of the road that the ego turns into.
     let turns = matches!(told.sv.turning, Turning::Left | Turning::Right);
     if told.edge.is_some() && turns && told.sv.lane.is_none() {

@@ -10,7 +10,12 @@ pub(super) const APPROACH_M: f64 = 320.0;
 const CORNER_M: f64 = 13.0;
 
 pub(super) fn strips(driving: usize, beside: &[StripKind]) -> Vec<Strip> {
-    let lane = Strip { width_m: Some(LANE_M), ..Strip::of(StripKind::Driving) };
+    strips_of(LANE_M, driving, beside)
+}
+
+/// The same with lanes of this width. [m]
+pub(super) fn strips_of(lane_m: f64, driving: usize, beside: &[StripKind]) -> Vec<Strip> {
+    let lane = Strip { width_m: Some(lane_m), ..Strip::of(StripKind::Driving) };
     let mut list = vec![lane; driving];
     list.extend(beside.iter().map(|kind| Strip::of(*kind)));
     list

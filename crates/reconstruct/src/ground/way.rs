@@ -4,7 +4,6 @@ use crate::ground::pieces::{APPROACH_M, corner_m};
 use crate::told::aside::Aside;
 use crate::told::astride::INSIDE_M;
 use crate::told::crash::Told;
-use crate::usual::LANE_M;
 use recrash_model::account::{LaneLine, LaneWord, LeftRight};
 use recrash_model::geometry::{Pose, Vec2};
 use recrash_model::math;
@@ -46,6 +45,10 @@ pub(crate) struct Ground {
     /// In one direction, and in the other.
     pub(crate) lanes: usize,
     pub(crate) oncoming: usize,
+    /// In each direction of the road that crosses.
+    pub(crate) cross_lanes: usize,
+    /// How wide a lane is. [m]
+    pub(crate) lane_m: f64,
     /// From the ego's line to the middle of who is parked at the kerb on the left, and on the right. [m]
     pub(crate) kerbs_m: [f64; 2],
     /// From the ego's line to where it stands, to the right: it is parked at the kerb. [m]
@@ -109,7 +112,7 @@ impl Ground {
         let short = told.crosses_before_walk();
         let Some(walk) = walk.filter(|_| self.junction && (short || told.crosses_at_walk())) else { return self };
         let strips_m: f64 = self.beside[..walk].iter().map(|kind| kind.usual_width_m()).sum();
-        let walk_m = self.lanes as f64 * LANE_M + strips_m + 0.5 * StripKind::Sidewalk.usual_width_m();
+        let walk_m = self.lanes as f64 * self.lane_m + strips_m + 0.5 * StripKind::Sidewalk.usual_width_m();
         let part_m = told.touched_ahead_m();
         let touched_m = match told.turns_over_walk() {
             Some(_) => {
@@ -158,7 +161,7 @@ impl Ground {
 
     /// The same, with an ego that stands over a line of the road, or at the edge of its lane, where it is told to.
     pub(super) fn over_line(self, told: &Told) -> Self {
-        let beside_m = 0.5 * LANE_M - INSIDE_M;
+        let beside_m = 0.5 * self.lane_m - INSIDE_M;
         let [left, right] = [self.lane > 0, usize::from(self.lane) + 1 < self.lanes];
         let stands_m = match told.stands_over().map(|over| (over.line, over.side)) {
             // The left edge of a road with two directions is that of the other one.
@@ -176,7 +179,7 @@ impl Ground {
 
     /// Where the middle of a junction is. [m]
     pub(crate) fn centre_y_m(&self) -> f64 {
-        (self.lanes as f64 - 0.5) * LANE_M
+        (self.lanes as f64 - 0.5) * self.lane_m
     }
 
     /// Where the middle of the nearest lane of those is who come towards the ego. [m]
@@ -191,7 +194,7 @@ impl Ground {
             Some(LaneWord::Right | LaneWord::RightTurn) => self.oncoming.saturating_sub(1),
             _ => 0,
         };
-        self.opposing_y_m() + number as f64 * LANE_M
+        self.opposing_y_m() + number as f64 * self.lane_m
     }
 
     pub(crate) fn sv_pose(&self, s_m: f64) -> Pose {
@@ -205,6 +208,9 @@ pub(super) struct Across {
     pub(super) lane: usize,
     pub(super) oncoming: usize,
     pub(super) beside: Vec<StripKind>,
+    /// Lanes in each direction of the road that crosses; and how wide one is. [1, m]
+    pub(super) cross_lanes: usize,
+    pub(super) lane_m: f64,
 }
 
 impl Across {
@@ -217,7 +223,7 @@ impl Across {
 
     /// From the ego's line to the outer edge of the lanes on the left, and on the right. [m]
     fn lane_edges_m(&self) -> [f64; 2] {
-        [self.oncoming + self.lane, self.lanes - self.lane - 1].map(|between| (between as f64 + 0.5) * LANE_M)
+        [self.oncoming + self.lane, self.lanes - self.lane - 1].map(|between| (between as f64 + 0.5) * self.lane_m)
     }
 }
 
@@ -225,11 +231,11 @@ pub(super) fn with_way(map: GraphMap, route: Vec<String>, across: Across, places
     let network = RoadNetwork::build(&MapSpec::G(map.clone()));
     let lane = across.lane as u8;
     let way = network.way(&route, lane, None).expect("the ego's way is on the map that was drawn for it");
-    let (kerbs_m, opposing_m) = (across.kerbs_m(), (across.lane + 1) as f64 * LANE_M);
+    let (kerbs_m, opposing_m) = (across.kerbs_m(), (across.lane + 1) as f64 * across.lane_m);
     // Of a road before a junction the rightmost lane lies on the x axis.
-    let own_y_m = if junction { (across.lanes - across.lane - 1) as f64 * LANE_M } else { 0.0 };
+    let own_y_m = if junction { (across.lanes - across.lane - 1) as f64 * across.lane_m } else { 0.0 };
     let off_m = way.pose(APPROACH_M - 1.0, 0.0).position.y - own_y_m;
-    let off_route_m = if off_m.abs() > 0.5 * LANE_M { off_m } else { 0.0 };
+    let off_route_m = if off_m.abs() > 0.5 * across.lane_m { off_m } else { 0.0 };
     Ground {
         map: Rc::new(map),
         network: Arc::new(network),
@@ -241,6 +247,8 @@ pub(super) fn with_way(map: GraphMap, route: Vec<String>, across: Across, places
         junction,
         lanes: across.lanes,
         oncoming: across.oncoming,
+        cross_lanes: across.cross_lanes,
+        lane_m: across.lane_m,
         kerbs_m,
         lane_edges_m: across.lane_edges_m(),
         beside: across.beside,

@@ -4,7 +4,7 @@ use crate::ground::pieces::corner_m;
 use crate::nearby::scene::{DRIVES_MPS, Scene};
 use crate::nearby::way::Way;
 use crate::told::near::Does;
-use crate::usual::{LANE_M, TURNS_MPS};
+use crate::usual::TURNS_MPS;
 use recrash_model::account::{Act, LeftRight, Origin};
 use recrash_model::geometry::Pose;
 use recrash_model::scenario::StripKind;
@@ -40,7 +40,7 @@ impl<'a> Scene<'a> {
     /// The same of one of which nobody tells where it stands: in a lane of the other direction it faces as they do there.
     pub(super) fn stands_somewhere_beside(&self, side: LeftRight, half_m: f64) -> Vec<Way> {
         let t_m = self.beside_m(side, self.until);
-        let against = self.is_two_way() && -t_m > self.ground.opposing_m - 0.5 * LANE_M;
+        let against = self.is_two_way() && -t_m > self.ground.opposing_m - 0.5 * self.ground.lane_m;
         let turned = if against { std::f64::consts::PI } else { 0.0 };
         let mut ways = self.stands_beside(side, half_m);
         ways.iter_mut().for_each(|way| way.from.heading += turned);

@@ -65,7 +65,7 @@ impl<'a> Scene<'a> {
 
     /// In a lane towards the ego, 0 is the next one.
     pub(super) fn against_in(&self, lane: usize, s_m: f64) -> Pose {
-        let pose = self.road(s_m, -self.ground.opposing_m - lane as f64 * LANE_M);
+        let pose = self.road(s_m, -self.ground.opposing_m - lane as f64 * self.ground.lane_m);
         Pose { heading: pose.heading + std::f64::consts::PI, ..pose }
     }
 
@@ -96,7 +96,7 @@ impl<'a> Scene<'a> {
         let from_m = self.told.sv_aside().map_or(0.0, |aside| aside.from_t_m);
         // Beside it only where lanes lead its way.
         let [_, right_m] = self.ground.lane_edges_m;
-        let left_m = self.ground.opposing_m - 0.5 * LANE_M;
+        let left_m = self.ground.opposing_m - 0.5 * self.ground.lane_m;
         let beside = [-LANE_M, LANE_M].into_iter().filter(|t_m| *t_m < right_m && -*t_m < left_m);
         to_m.into_iter().chain([from_m]).chain(beside).collect()
     }

@@ -6,7 +6,7 @@ use crate::nearby::way::{SLOWS_BY_MPS, Way};
 use crate::told::near::{Does, First, Near};
 use crate::told::others::{Extra, Role};
 use crate::told::sizes::size_of as size_of_kind;
-use crate::usual::{LANE_M, STANDS_MPS, WALKS_MPS};
+use crate::usual::{STANDS_MPS, WALKS_MPS};
 use recrash_model::account::{Kind, KindGroup, LeftRight, Origin};
 use recrash_model::geometry::Pose;
 use recrash_model::kinds::PartnerKind;
@@ -273,7 +273,7 @@ impl Scene<'_> {
         let mut ways: Vec<Way> = ways.filter(|way| way.stops_m.is_none()).collect();
         // Who comes towards the ego beside the partner is in another lane than that.
         if near.place == Some(Origin::Opposite) && self.told.origin == Origin::Opposite {
-            let next_m = self.ground.opposing_m + 0.5 * LANE_M;
+            let next_m = self.ground.opposing_m + 0.5 * self.ground.lane_m;
             ways.sort_by_key(|way| -self.ground.beside(way.from.position).1 < next_m);
         }
         let shifted = |by_m: f64| {

@@ -164,7 +164,7 @@ impl Scene<'_> {
     /// and of a junction.
     pub(super) fn screen(&self, extra: &Extra, length_m: f64) -> Option<ActorPlan> {
         let side = self.told.comes_from_side()?;
-        let [left_m, right_m] = [self.ground.opposing_m - 0.5 * LANE_M, self.ground.lane_edges_m[1]];
+        let [left_m, right_m] = [self.ground.opposing_m - 0.5 * self.ground.lane_m, self.ground.lane_edges_m[1]];
         let against = side == LeftRight::Left && (extra.opposite || left_m < LANE_M);
         let t_m = match side {
             LeftRight::Left if against => -self.ground.opposing_m,

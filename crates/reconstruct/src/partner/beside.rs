@@ -65,7 +65,8 @@ pub(super) fn line_y_m(told: &Told, staging: &Staging) -> Option<f64> {
     }
     let wrong_side = told.is_met_on_wrong_side(&staging.ground, staging.cp);
     if wrong_side && told.squeezes_by() {
-        return Some(staging.cp.position.y.max(staging.ground.sv_pose(0.0).position.y - 0.5 * LANE_M) + 0.5 * LANE_M);
+        let half_m = 0.5 * staging.ground.lane_m;
+        return Some(staging.cp.position.y.max(staging.ground.sv_pose(0.0).position.y - half_m) + half_m);
     }
     if told.squeezes_by() {
         let turn = math::wrap_angle(staging.cp.heading - staging.cp_came);
@@ -108,16 +109,16 @@ const OVER_WITHIN_M: f64 = 0.5;
 pub(super) fn over_y_m(told: &Told, staging: &Staging) -> Option<f64> {
     let over = told.cp.astride.filter(|_| told.comes_over_line())?;
     let (ground, y_m) = (&staging.ground, staging.cp.position.y);
-    let (own_y_m, lane) = (ground.sv_pose(0.0).position.y, f64::from(ground.lane));
+    let (own_y_m, lane, lane_m) = (ground.sv_pose(0.0).position.y, f64::from(ground.lane), ground.lane_m);
     // Lines lie so many lanes to the left of that beside the ego's; the last before those of the other direction is that between the two.
-    let line = (y_m - own_y_m) / LANE_M - 0.5;
+    let line = (y_m - own_y_m) / lane_m - 0.5;
     let (first, last) = match told.origin {
         Origin::Opposite => (lane + 1.0, lane + ground.oncoming as f64 - 1.0),
         _ => (lane + 1.0 - ground.lanes as f64, lane - 1.0),
     };
     let edge_m = match (over.line, over.side.or_else(|| told.touched_side())) {
-        (LaneLine::Centre, _) => own_y_m + (lane + 0.5) * LANE_M,
-        (LaneLine::Lanes, _) if first <= last => own_y_m + (line.round().clamp(first, last) + 0.5) * LANE_M,
+        (LaneLine::Centre, _) => own_y_m + (lane + 0.5) * lane_m,
+        (LaneLine::Lanes, _) if first <= last => own_y_m + (line.round().clamp(first, last) + 0.5) * lane_m,
         // The left edge of a road with two directions is that of the other one.
         (LaneLine::Edge, Some(LeftRight::Left)) if ground.oncoming == 0 => own_y_m + ground.lane_edges_m[0],
         (LaneLine::Edge, Some(LeftRight::Right)) => own_y_m - ground.lane_edges_m[1],
@@ -211,7 +212,9 @@ pub(super) fn out_m(told: &Told, staging: &Staging) -> f64 {
     let sine = gear * math::sin(staging.cp_came);
     let lane_edge_m = staging.ground.kerbs_m[usize::from(sine < 0.0)] - 0.5 * strip_m;
     let begins_m = match told.origin {
-        Origin::Stall { .. } | Origin::Cross { .. } => lane_edge_m + half_m,
+        // In the middle of its stall.
+        Origin::Stall { .. } => lane_edge_m + half_m.max(0.5 * StripKind::Stalls.usual_width_m()),
+        Origin::Cross { .. } => lane_edge_m + half_m,
         _ => lane_edge_m + strip_m + half_m,
     };
     let aside_m = begins_m - position.y * sine.signum();

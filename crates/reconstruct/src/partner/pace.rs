@@ -129,7 +129,8 @@ fn partner_pace(told: &Told, staging: &Staging, (ego, ego_m, before_s): (&Pace, 
             let swings = turn > SWINGS_RAD;
             let way_m = match told.origin {
                 _ if cp.backs_in => BACKS_IN_M,
-                Origin::Stall { .. } | Origin::Driveway { .. } => beside::out_m(told, staging).max(BACKS_OUT_M),
+                Origin::Stall { .. } => beside::out_m(told, staging).max(LEAST_OUT_M).max(LEAST_BACK_M * turn),
+                Origin::Driveway { .. } => beside::out_m(told, staging).max(BACKS_OUT_M),
                 // It has no more time for that.
                 _ if told.backs_late && !cp.phases.is_empty() => SWINGS_LATE_M,
                 _ if swings && !cp.phases.is_empty() => SWINGS_BACK_M.max(LEAST_BACK_M * turn),
@@ -137,17 +138,25 @@ fn partner_pace(told: &Told, staging: &Staging, (ego, ego_m, before_s): (&Pace, 
             };
             // Who backed before the ego did something backs for longer.
             let backing_s = before_s.map_or(0.0, |from_s| contact_s - from_s + BACKS_EARLIER_S);
-            start_over(
-                contact_s,
-                cp.speed_mps,
-                way_m.max(cp.speed_mps * (backing_s - 0.5 * cp.speed_mps / SETS_OFF_MPS2)),
-            )
-            .unwrap_or(usual)
+            let longer_m = cp.speed_mps * (backing_s - 0.5 * cp.speed_mps / SETS_OFF_MPS2);
+            // Nobody stood deeper than in its stall.
+            let most_m = match told.origin {
+                Origin::Stall { .. } => way_m.max(beside::out_m(told, staging) + IN_STALL_M),
+                _ => f64::INFINITY,
+            };
+            start_over(contact_s, cp.speed_mps, way_m.max(longer_m).min(most_m)).unwrap_or(usual)
         }
         // Who comes from the kerb or out of a stall stood there.
         ContactState::Moving if told.stood_beside() || enters && from_stand(told) => {
             let way_m = match told.origin {
                 Origin::Driveway { .. } => beside::out_m(told, staging).max(PULL_OUT_M),
+                // It has come no farther than out of its stall, but where it gains speed, or turns, on that.
+                Origin::Stall { .. } => {
+                    let turn = math::wrap_angle(staging.cp.heading - staging.cp_came).abs();
+                    let gains_m = 0.5 * cp.speed_mps * cp.speed_mps / NOSES_OUT_MPS2;
+                    let aside_m = if cp.aside.is_some() { ASIDE_OUT_M } else { 0.0 };
+                    beside::out_m(told, staging).max(gains_m).max(LEAST_BACK_M * turn).max(aside_m)
+                }
                 _ => PULL_OUT_M,
             };
             let moving_s = (2.0 * way_m / cp.speed_mps * 10.0).round() / 10.0;
@@ -179,8 +188,13 @@ const TURNS_M: f64 = 8.0;
 /// Who came along ahead of the ego was so much farther ahead than it is at the contact, at least. [m]
 const AHEAD_M: f64 = 1.0;
 
-/// Who backs out of a stall or a driveway has done so for so far. [m]
+/// Who backs out of a driveway has done so for so far, out of a stall for so far; in that it stood no deeper than in its middle by so much; who
+/// drives out of it, and goes aside, has done so for so far, and gains speed by no more than this. [m, m/s^2]
 const BACKS_OUT_M: f64 = 4.5;
+const LEAST_OUT_M: f64 = 0.8;
+const IN_STALL_M: f64 = 1.0;
+const ASIDE_OUT_M: f64 = 3.4;
+const NOSES_OUT_MPS2: f64 = 2.5;
 
 /// Who came along the road, and turned by more than this while it reversed, has reversed so far. [rad, m]
 const SWINGS_RAD: f64 = 0.2;

@@ -80,7 +80,7 @@ fn into_the_road(told: &Told, staging: &Staging, pace: &Pace, arm_m: f64) -> Opt
     let (Origin::Cross { side }, true, true) = (told.origin, ground.junction, towards) else { return None };
     // The lane nearest to the ego from the left, the one beside the middle from the right.
     let lane_m = match side {
-        LeftRight::Left => -(ground.lanes as f64 - 0.5) * LANE_M,
+        LeftRight::Left => -(ground.cross_lanes as f64 - 0.5) * LANE_M,
         LeftRight::Right => 0.5 * LANE_M,
     };
     let turned = Pose { heading: math::PI, ..cp };

@@ -85,6 +85,11 @@ impl Told {
         let layout = Layout::of(account, partner);
         // Who rides along the sidewalk of the crossing road comes over the crosswalk, and along no lane.
         cp.lane = cp.lane.filter(|lane| *lane != LaneWord::Sidewalk || !matches!(origin, Origin::Cross { .. }));
+        // A slip lane is the way of a right turn.
+        let slips = layout.slip_lane && origin == Origin::Behind && account.sv.controls.is_empty();
+        if slips && sv.turning == Turning::No && told(&account.sv.lane) != Some(LaneWord::Left) {
+            (sv.turning, sv.stopped_aside) = (Turning::Right, None);
+        }
         let comes_round = origin_told && origin::comes_round(origin, partner, cp.state, cp.movement);
         let right = Some(LeftRight::Right);
         let origin = match comes_round {

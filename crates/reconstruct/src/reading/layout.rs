@@ -1,7 +1,7 @@
 //! The words for the road, and for the places on it.
 
 use crate::reading::words::{span, text};
-use crate::told::layout::{Counted, Layout, Standing, StoodOpen};
+use crate::told::layout::{Counted, Layout, OffStreet, Standing, StoodOpen};
 use crate::told::zones::side_of;
 use recrash_model::account::{
     Account, Act, ActFact, Fact, LaneLine, LaneWord, LeftRight, Origin, Party, RoadFeature, SignalState, Source,
@@ -40,6 +40,13 @@ impl Layout {
             cp: standing(account, partner),
             narrow: has(RoadFeature::NarrowStreet),
             one_way: has(RoadFeature::OneWay),
+            stalls: has(RoadFeature::Stall),
+            off_street: ways_off_street(account, partner, false),
+            cp_into: ways_off_street(account, partner, true) == Some(OffStreet::Into),
+            cp_off_street: is_told_on(account, partner, &["alley", "driveway", "parking lot", "garage"]),
+            at_junction: account.place.features.iter().any(is_at_junction),
+            slip_lane: account.place.features.iter().any(is_in_slip_lane),
+            three_arms: told(&account.place.arms) == Some(3),
             splits: splits_lanes(partner),
             crosswalk: is_told_on(account, partner, &["crosswalk", "sidewalk"])
                 && !is_told_on(account, partner, &BESIDE_WALK),
@@ -62,6 +69,56 @@ impl Layout {
             rear_door: rear_door(account, partner),
             stood_open: stood_open(account, partner),
         }
+    }
+}
+
+/// Whether words tell that the ego was at a junction: "in a queue of traffic at the intersection", not the name of that alone.
+fn is_at_junction(feature: &Fact<RoadFeature>) -> bool {
+    let words = text(&feature.source);
+    let at = ["at ", "for ", "approach", "reach", "towards "].iter().any(|lead| words.starts_with(lead));
+    feature.value == RoadFeature::Intersection && at
+}
+
+/// How the ego, or the partner, is told to turn at a way off the street: what is told with nobody else's turn is the ego's.
+fn ways_off_street(account: &Account, partner: &Party, of_partner: bool) -> Option<OffStreet> {
+    let turns = |party: &Party| turn_spans(&party.acts);
+    let others: Vec<(usize, usize)> = account.others.iter().flat_map(|other| turn_spans(&other.acts)).collect();
+    let within = |spans: &[(usize, usize)], at: (usize, usize)| spans.iter().any(|span| span.0 < at.1 && at.0 < span.1);
+    let partners = turns(partner);
+    account.place.features.iter().find_map(|feature| {
+        let at = span(&feature.source)?;
+        let is_partners = within(&partners, at);
+        let here = if of_partner { is_partners } else { !is_partners && !within(&others, at) };
+        turns_off_street(feature).filter(|_| here)
+    })
+}
+
+/// Where the words for somebody's turns stand.
+fn turn_spans(acts: &[ActFact]) -> Vec<(usize, usize)> {
+    acts.iter().filter(|fact| fact.act == Act::Turn).filter_map(|fact| span(&fact.source)).collect()
+}
+
+/// Whether words tell that the ego was in a slip lane: "in the slip lane", not the name of that alone.
+fn is_in_slip_lane(feature: &Fact<RoadFeature>) -> bool {
+    let words = text(&feature.source);
+    feature.value == RoadFeature::Merge
+        && words.contains("lane")
+        && ["in ", "on ", "into "].iter().any(|lead| words.starts_with(lead))
+}
+
+/// How somebody turns by the words for a way off the street: "turned left into a parking lot", "turning right out of an alley".
+fn turns_off_street(feature: &Fact<RoadFeature>) -> Option<OffStreet> {
+    let words = text(&feature.source);
+    let way = matches!(
+        feature.value,
+        RoadFeature::Driveway | RoadFeature::ParkingLot | RoadFeature::Garage | RoadFeature::Alley
+    );
+    let has = |list: &[&str]| way && words.contains("turn") && list.iter().any(|word| words.contains(word));
+    let out = has(&["out of ", " from ", "exit", "leaving "]) || words.starts_with("left ");
+    match (has(&[" into ", " toward"]), way && out) {
+        (true, _) => Some(OffStreet::Into),
+        (false, true) => Some(OffStreet::OutOf),
+        (false, false) => None,
     }
 }
 

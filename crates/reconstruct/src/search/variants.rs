@@ -5,7 +5,7 @@ use crate::told::crash::Told;
 use crate::told::doing::Doing;
 use crate::told::others::Extra;
 use crate::told::phase::{CHECKED_PHASES, checked};
-use crate::told::side::Side;
+use crate::told::side::{Side, Turning};
 use recrash_model::account::{LeftRight, Origin, PlaceKind};
 
 impl Told {
@@ -180,10 +180,15 @@ impl Told {
         origins.into_iter().map(with).collect()
     }
 
-    /// The same at a junction too, where somebody on a street crosses nearby, or turns.
+    /// The same at a junction too, where somebody on a street crosses nearby, or turns; and where the partner turns out of a driveway, if
+    /// it cannot without.
     fn with_junction(self) -> Vec<Self> {
         let crossed = self.place == PlaceKind::Street && self.wanted.iter().any(Extra::is_at_junction);
-        let at_one = crossed.then(|| Self { crossed_near: true, ..self.clone() });
-        at_one.into_iter().chain([self]).collect()
+        let turns = self.comes_off_drive() && self.cp.turning != Turning::No;
+        let at_one = (crossed || turns).then(|| Self { crossed_near: true, ..self.clone() });
+        match crossed {
+            true => at_one.into_iter().chain([self]).collect(),
+            false => [self].into_iter().chain(at_one).collect(),
+        }
     }
 }

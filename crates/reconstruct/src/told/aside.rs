@@ -68,6 +68,9 @@ impl Told {
             Origin::Beside { side } | Origin::Cross { side } => Some(if makes_room { side.other() } else { side }),
             _ => None,
         });
+        // Nobody parks, or makes room, in the way of who comes towards it.
+        let pulls_over = movement == Movement::ParkingManeuver && self.origin == Origin::Opposite;
+        let towards = towards.or(pulls_over.then_some(right));
         let towards = towards
             .or_else(|| side_of(&self.sv.zones).map(|side| if (side > 0.0) != makes_room { left } else { right }));
         let by = |usual: LeftRight, way_m: f64| if towards.unwrap_or(usual) == left { -way_m } else { way_m };
@@ -101,9 +104,10 @@ impl Told {
         })
     }
 
-    /// How far the ego leaves its line that drifts or dodges: no farther than its lane, where it is told to have stayed in that. [m]
+    /// How far the ego leaves its line that drifts or dodges: no farther than its lane, where it is told to have stayed in that, or makes
+    /// room in a narrow street. [m]
     fn sv_departs_m(&self) -> f64 {
-        match self.sv.acts.iter().any(|doing| doing.within_lane) {
+        match self.squeezes_by() || self.sv.acts.iter().any(|doing| doing.within_lane) {
             // Where it stands it has done half of that.
             true if self.sv.state.stands() => STOPS_WITHIN_LANE_M,
             true => WITHIN_LANE_M,

@@ -37,6 +37,7 @@ impl Told {
             && parked
             && !self.is_partly_in_lane(of_ego)
             && !self.is_in_lane(of_ego)
+            && !(of_ego && self.makes_room_in_lane())
             && (of_ego || self.thing.is_none())
     }
 
@@ -82,12 +83,19 @@ impl Told {
             && side_of(&self.sv.zones) == Some(1.0)
     }
 
-    /// Whether an ego that stood at the kerb set off straight on, and touches one that stands there ahead of it: both are beside the lanes.
+    /// Whether an ego that stood at the kerb sets off straight on, or did, and touches one that stands there ahead of it: it is beside the lanes.
     pub(crate) fn sets_off_at_kerb(&self) -> bool {
         let moves = matches!(self.sv.state, ContactState::Moving | ContactState::SettingOff) && self.sv.stood_first;
         let straight = self.sv.turning == Turning::No && self.sv_aside().is_none() && self.sv.lane.is_none();
         let ahead = self.origin == Origin::Ahead && self.stands_beside(false);
-        self.layout.sv.at_kerb && moves && straight && ahead
+        // Who has just set off has not left it.
+        let just = self.sv.state == ContactState::SettingOff && !self.layout.sv.in_lane;
+        self.layout.sv.at_kerb && straight && (just || moves && ahead)
+    }
+
+    /// Whether the ego went aside and stopped for one that comes towards it in a narrow street: it stays in its lane.
+    fn makes_room_in_lane(&self) -> bool {
+        self.squeezes_by() && matches!(self.sv.stopped_aside, Some(Act::Drift | Act::Swerve))
     }
 
     /// Whether an ego that is not parked stopped at the kerb, and has not moved since.
@@ -97,13 +105,19 @@ impl Told {
         let pulls_over =
             matches!(self.sv.stopped_aside, Some(Act::PullOver | Act::Park)) && self.origin != Origin::Opposite;
         let to_right = self.sv.aside != Some(LeftRight::Left);
-        stops && to_right && (self.layout.sv.at_kerb || pulls_over)
+        stops && to_right && !self.makes_room_in_lane() && (self.layout.sv.at_kerb || pulls_over)
     }
 
     /// Whether an ego that is told to have stood at the kerb from the start, and not to be passed from behind, stands there all the time.
     pub(crate) fn stays_at_kerb(&self) -> bool {
         let stood = self.sv.state == ContactState::Stopped && self.sv.stands_from_start && self.sv.phases.is_empty();
         stood && self.origin != Origin::Behind && self.is_at_kerb()
+    }
+
+    /// Whether the partner comes out of a driveway or a lot onto a street along which the ego goes straight on: no road crosses that there.
+    pub(crate) fn comes_off_drive(&self) -> bool {
+        let drive = matches!(self.origin, Origin::Driveway { .. }) && self.place == PlaceKind::Street;
+        drive && self.sv.turning == Turning::No && self.sv.control.is_none() && !self.enters() && !self.cp.enters()
     }
 
     /// Whether the partner reverses out of a stall or a driveway.

@@ -40,6 +40,13 @@ pub(crate) struct Standing {
     pub(crate) lane_edge: bool,
 }
 
+/// How the ego turns at a way off the street: a driveway, an alley, or the way into a lot or a garage.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum OffStreet {
+    Into,
+    OutOf,
+}
+
 /// What is told so.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(crate) struct Layout {
@@ -48,6 +55,20 @@ pub(crate) struct Layout {
     /// The street is narrow; it is one-way.
     pub(crate) narrow: bool,
     pub(crate) one_way: bool,
+    /// There are stalls.
+    pub(crate) stalls: bool,
+    /// The ego turns into a way off the street, or out of one.
+    pub(crate) off_street: Option<OffStreet>,
+    /// The partner turns into one.
+    pub(crate) cp_into: bool,
+    /// The partner comes along one that crosses: out of an alley.
+    pub(crate) cp_off_street: bool,
+    /// The ego is told to be at a junction.
+    pub(crate) at_junction: bool,
+    /// The ego is told to be in a slip lane.
+    pub(crate) slip_lane: bool,
+    /// Three roads meet.
+    pub(crate) three_arms: bool,
     /// The partner rides or drives between two lanes: "lane-splitting".
     pub(crate) splits: bool,
     /// The partner comes over the crosswalk, or off the sidewalk; and it is told to have been beside the crosswalk.

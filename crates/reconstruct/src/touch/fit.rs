@@ -107,7 +107,7 @@ impl Told {
         let own_way =
             !self.crosses_at_walk() && !matches!(self.cp.movement, Some(Movement::WrongWay | Movement::Backing));
         let straight = self.cp.turning == Turning::No && self.cp.state != ContactState::Reversing && own_way;
-        let lanes_m = ground.lanes as f64 * LANE_M;
+        let lanes_m = ground.cross_lanes as f64 * LANE_M;
         let told = straight && self.cp.control.is_some() && ground.junction;
         matches!(self.origin, Origin::Cross { side } if told && !(0.0..=lanes_m).contains(&(-sign(side) * cp.position.x)))
     }
@@ -189,6 +189,6 @@ impl Told {
     /// Whether an oncoming partner that drives straight on touches an ego that stands on the ego's side of the road. Nobody tells that it
     /// left its own: it does so late.
     pub(crate) fn is_met_on_wrong_side(&self, ground: &Ground, cp: Pose) -> bool {
-        self.is_met_by_oncoming() && cp.position.y < ground.opposing_y_m() - 0.5 * LANE_M
+        self.is_met_by_oncoming() && cp.position.y < ground.opposing_y_m() - 0.5 * ground.lane_m
     }
 }

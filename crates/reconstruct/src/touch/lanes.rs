@@ -33,10 +33,14 @@ impl Lanes {
             return None;
         }
         // The line between the two directions, which keep to the right of it.
-        let middle = Vec2::new(0.0, ground.sv_pose(0.0).position.y + (f64::from(ground.lane) + 0.5) * LANE_M);
-        let count = if math::cos(way_rad) < -0.5 { ground.oncoming } else { ground.lanes };
+        let middle = Vec2::new(0.0, ground.sv_pose(0.0).position.y + (f64::from(ground.lane) + 0.5) * ground.lane_m);
+        let count = match math::cos(way_rad) {
+            _ if across => ground.cross_lanes,
+            cosine if cosine < -0.5 => ground.oncoming,
+            _ => ground.lanes,
+        };
         let middle_m = Vec2::from_heading(way_rad).cross(middle);
-        let lefts_m: Vec<f64> = (0..count).map(|lane| middle_m - (lane as f64 + 0.5) * LANE_M).collect();
+        let lefts_m: Vec<f64> = (0..count).map(|lane| middle_m - (lane as f64 + 0.5) * ground.lane_m).collect();
         let own_m = Vec2::from_heading(way_rad).cross(ground.sv_pose(0.0).position);
         (!lefts_m.is_empty()).then_some(Self { way_rad, lefts_m, own_m })
     }

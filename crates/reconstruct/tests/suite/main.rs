@@ -15,6 +15,7 @@ mod drives;
 mod earlier;
 mod ego_way;
 mod going_first;
+mod ground;
 mod in_place;
 mod in_step;
 mod kerb;

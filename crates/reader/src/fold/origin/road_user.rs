@@ -57,7 +57,7 @@ const RULES: [Rule; 42] = [
     |case| case.thrown_at_the_rear(),
     |case| case.out_of_a_place(),
     |case| case.stood_in_a_stall(),
-    |case| case.backwards_out_of_a_driveway(),
+    |case| case.stood_in_a_driveway(),
     |case| case.ahead_in_the_lane_that_was_left(),
     |case| case.backwards(),
     |case| case.opens_a_door(),

@@ -100,14 +100,19 @@ impl Case<'_> {
         told_as(Origin::Stall { side: self.side.or(square).or(self.touched) }, source)
     }
 
-    /// It stood in a driveway, and came out of it backwards.
-    pub(super) fn backwards_out_of_a_driveway(&self) -> Told {
-        if !self.parked || !self.did(Act::Reverse) {
+    /// It stood in a driveway, and came out of it: backwards, or "was stopped facing north in a driveway and began to turn left".
+    pub(super) fn stood_in_a_driveway(&self) -> Told {
+        let backs = self.parked && self.did(Act::Reverse);
+        let drives = [Act::Turn, Act::PullOut, Act::SetOff].into_iter().any(|act| self.did(act));
+        if !backs && (!drives || self.did(Act::Reverse) || self.behind_first()) {
             return None;
         }
         let source = stood_in(self.reading, self.actor, &["driveway", "driveways"])?;
         let across = self.clues.any(Relation::Opposite).then_some(LeftRight::Left);
-        told_as(Origin::Driveway { side: self.side.or(across).or(self.touched) }, source)
+        let stands = |act: Option<Act>| matches!(act, Some(Act::Hold | Act::Park));
+        let own = self.account.sv.heading.as_ref().map(|fact| fact.value);
+        let of_road = || side_of_road_of(self.reading, self.actor, own, stands).filter(|_| !backs);
+        told_as(Origin::Driveway { side: self.side.or(across).or_else(of_road).or(self.touched) }, source)
     }
 
     /// A door of a parked one.
