@@ -10,7 +10,7 @@ use crate::facts::lane::{lane, lane_words};
 use crate::facts::movement::{self, Way};
 use crate::facts::origin::{comes_by_lane, origin, origin_words};
 use crate::facts::seen::Seen;
-use crate::facts::state::{changed, stands_at_stop, state, stood};
+use crate::facts::state::{came_slowly, changed, ran, stands_at_stop, state, stood};
 use crate::facts::strays::until_touched;
 use crate::facts::{edge, keeping, phases, signals, things, thrown};
 use crate::told::crash::Told;
@@ -203,6 +203,8 @@ impl<'a> Crash<'a> {
                 && (stood || !side.stood_first)
                 && (slowed || side.slowed_from.is_none())
                 && (gained || !side.gains)
+                && (!side.runs() || ran(track, time_s))
+                && (side.rolled_mps.is_none_or(|mps| came_slowly(track, time_s, mps)))
                 && as_told
                 && in_order;
         let (mut expected, mut observed) = (side.state.label().to_owned(), format!("{:.2} m/s", seen.speed()));
@@ -216,6 +218,12 @@ impl<'a> Crash<'a> {
         }
         if rolls_out {
             expected += ", without a stop";
+        }
+        if side.runs() {
+            expected += ", at a run";
+        }
+        if let Some(mps) = side.rolled_mps {
+            expected += &format!(", before at {mps:.1} m/s");
         }
         if side.phases.is_empty() {
             expected += before(side.stood_first, side.slowed_from.is_some(), side.gains);

@@ -216,7 +216,7 @@ pub(super) fn junction(told: &Told, crossing: bool) -> Ground {
     let beside = if crosses { usual.to_vec() } else { beside };
     let across = Across { lanes, lane, oncoming: if one_way || one_sided { 0 } else { lanes }, beside };
     let ground = with_way(map, vec!["own-".to_owned(), exit.to_owned()], across, places, true);
-    let ground = if at_line.is_empty() { ground.at_walk(told) } else { ground };
+    let ground = if at_line.is_empty() { ground.at_walk(told).in_their_lanes(told) } else { ground };
     let ground = if at_kerb { ground.at_kerb() } else { ground }.over_line(told);
     if told.sv.turned { ground.after_turn() } else { ground }
 }

@@ -5,7 +5,7 @@ use crate::others::scene::{MET_BEFORE_S, Scene};
 use crate::pace::plain::when;
 use crate::told::others::{Extra, Role};
 use crate::told::side::size_of;
-use crate::usual::{LEAD_GAP_M, ROOM_M, beyond_m};
+use crate::usual::{LEAD_GAP_M, ROOM_M, RUNS_MPS, beyond_m};
 use recrash_model::account::LeftRight;
 use recrash_model::geometry::Vec2;
 use recrash_model::math;
@@ -27,7 +27,6 @@ const CROSSING_LANES_M: [f64; 2] = [11.0, 15.0];
 
 /// Who rides crosses so. [m/s]
 pub(super) const RIDES_MPS: f64 = 3.5;
-const RUNS_MPS: f64 = 3.0;
 const CROSSES_MPS: f64 = 7.0;
 
 /// An animal that stays before an ego which stands comes to a stand so, and so far beyond the middle of its way: no farther than this

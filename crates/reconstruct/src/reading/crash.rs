@@ -154,6 +154,7 @@ impl Told {
             thrower: others::thrower(account),
             touch: others::touch(account),
             pusher_stands: others::pusher_stands(account),
+            pusher_fast: others::pusher_fast(account),
             pushed_rolling,
             throwers: account.others.iter().filter(|other| other.touched_partner).count().min(1),
             trailer_of: kind.filter(|_| trailer::touches(partner)),

@@ -1,5 +1,6 @@
 //! Others than the two: who is told of besides them, and why the ego stood.
 
+use crate::reading::acts::is_hard;
 use crate::reading::story::{Story, has_siren, is_at_junction, is_parked, lets_in_at_green, stays_close};
 use crate::reading::words::{before_contact, span, text};
 use crate::told::crash::Told;
@@ -8,7 +9,8 @@ use crate::told::others::{Extra, GIVEN_WAY, Role, Thrower};
 use crate::told::queue::{leaves_lane, sets_off, waits_ahead};
 use crate::told::zones::side_of;
 use recrash_model::account::{
-    self, Account, Act, ActFact, Astride, ContactState, Fact, Kind, KindGroup, LeftRight, Origin, Other, StandReason,
+    self, Account, Act, ActFact, Astride, ContactState, Fact, Kind, KindGroup, LeftRight, Manner, Origin, Other,
+    StandReason,
 };
 
 /// Things in the way, by their words.
@@ -69,6 +71,12 @@ const ALL_WAY: [&str; 6] = ["four-way", "four way", "4-way", "4 way", "all-way",
 /// Who threw the partner at the ego, where told.
 pub(super) fn pusher(account: &Account) -> Option<Kind> {
     account.others.iter().find(|other| other.touched_partner).map(|other| other.kind.value)
+}
+
+/// Whether who touched the partner first is told to have come fast.
+pub(super) fn pusher_fast(account: &Account) -> bool {
+    let fast = |fact: &ActFact| fact.manner == Some(Manner::Fast) && !is_hard(fact);
+    account.others.iter().any(|other| other.touched_partner && before_contact(other).any(fast))
 }
 
 /// Whether who touched the partner first is told to stand, and to do nothing else.

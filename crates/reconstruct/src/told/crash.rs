@@ -75,6 +75,8 @@ pub(crate) struct Told {
     pub(crate) touch: Option<EarlierTouch>,
     /// Who touched the partner first is told to stand: the partner ran into it.
     pub(crate) pusher_stands: bool,
+    /// Who touched the partner first is told to have come fast.
+    pub(crate) pusher_fast: bool,
     /// Who was pushed is told to have come along or slowed, and not to have stood.
     pub(crate) pushed_rolling: bool,
     /// So many of the others are told to have touched the partner first.

@@ -29,6 +29,7 @@ mod queues;
 mod roads_left;
 mod roadside;
 mod sabotage;
+mod speeds;
 mod steps;
 mod steps_between;
 mod stories;
