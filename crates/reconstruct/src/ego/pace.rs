@@ -83,7 +83,8 @@ pub(crate) fn ego_paces(told: &Told, ground: &Ground, sv_s_m: f64) -> (Option<Le
     let stood = sv.phases.iter().skip_while(|phase| **phase != Phase::Stands);
     let times = stood.filter(|phase| **phase == Phase::Drives).count().max(1) as f64;
     let waited_s = if sv.state.stands() { 0.0 } else { longer_s.max(0.0) };
-    match lead::lead(&sv.phases, begins_s, told.rolling_mps(), (moved_up_m / times).max(least_m), waited_s) {
+    let lead = lead::lead(&sv.phases, begins_s, told.rolling_mps(), (moved_up_m / times).max(least_m), waited_s);
+    match lead.map(|lead| if sv.came_hard { lead.came_hard() } else { lead }) {
         Some(lead) if sv.state.stands() => (Some(lead), STANDING),
         lead => (lead, usual),
     }

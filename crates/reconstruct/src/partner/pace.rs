@@ -28,6 +28,7 @@ use recrash_model::template::Movement;
 /// What the partner did before its last phase where that is told, or follows from what the ego did; and its last pace.
 pub(super) fn partner_paces(told: &Told, staging: &Staging) -> (Option<Lead>, Pace) {
     let (lead, last) = usual_paces(told, staging);
+    let lead = lead.map(|lead| if told.cp.came_hard { lead.came_hard() } else { lead });
     (lead, if told.cp.brakes_hard { braked_hard(last) } else { last })
 }
 

@@ -129,7 +129,8 @@ pub(super) fn side(party: &Party, kind: Option<Kind>, assumed: &mut Vec<String>,
         returns: returns(party),
         gains,
         reacts: false,
-        brakes_hard: brakes_hard(party),
+        brakes_hard: brakes_hard(party, true),
+        came_hard: brakes_hard(party, false),
         rolled_mps: rolled_mps.or(rolled_slowly(party)).filter(|_| stops && phases.is_empty()),
         slowed_early: slowed_early(party),
         stopped_aside,
@@ -194,11 +195,11 @@ fn is_under_way(stop: &ActFact) -> bool {
     text.split(|letter: char| !letter.is_alphanumeric()).any(|word| matches!(word, "coming" | "stopping" | "braking"))
 }
 
-/// Whether somebody is told to have braked hard since it last set off.
-fn brakes_hard(party: &Party) -> bool {
+/// Whether somebody is told to have braked hard since it last set off, or before that.
+fn brakes_hard(party: &Party, since: bool) -> bool {
     let before = || party.acts.iter().filter(|fact| !fact.after_contact);
     let set_off = before().filter(|fact| fact.act == Act::SetOff).map(|fact| fact.step).max();
-    before().any(|fact| Some(fact.step) > set_off && is_hard(fact))
+    before().any(|fact| (Some(fact.step) > set_off) == since && is_hard(fact))
 }
 
 /// Who is slower than this before its stop stood before that. [m/s]

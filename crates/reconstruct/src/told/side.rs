@@ -57,6 +57,8 @@ pub(crate) struct Side {
     pub(crate) reacts: bool,
     /// It is told to have braked hard.
     pub(crate) brakes_hard: bool,
+    /// The same, before it set off last.
+    pub(crate) came_hard: bool,
     /// How fast it came before it stopped, where that is told and slower than is usual. [m/s]
     pub(crate) rolled_mps: Option<f64>,
     /// It is told to have gained speed while it drove, and to be under way at the contact.
