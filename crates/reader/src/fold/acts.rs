@@ -3,6 +3,7 @@
 use super::Reading;
 use super::across::{begins, is_behind_begin};
 use super::lanes::{comes_onto_a_lane, enters_a_lane, is_about_to_merge, waits_to_change};
+use super::manner::manner;
 use super::sides::{back_to_the_middle, lane_entered, side_of};
 use super::speeds::is_of_last_contact;
 use super::undone::not_done;
@@ -13,7 +14,6 @@ use crate::lexicon::{Form, Progress, Relation, Sense};
 use crate::token::Token;
 use crate::world::{Actor, SUBJECT};
 use recrash_model::account::{Account, Act, ActFact, Kind, KindGroup, LeftRight, Manner};
-use recrash_model::kinds::PartnerKind;
 use recrash_model::template::Movement;
 
 /// What somebody did, in order; the same act told twice in a row once.
@@ -273,78 +273,6 @@ fn is_done(reading: &Reading<'_>, frame: &Frame) -> bool {
         || turned
         || ["complet", "finish", "exit"].iter().any(|start| first.starts_with(start))
 }
-
-/// "braked hard", "reacted with heavy braking", "came to an abrupt stop"; not "stopped on the hard shoulder", "behind a stopped heavy truck".
-fn brakes_hard(words: &[Token]) -> bool {
-    let word = |at: usize| words.get(at).map_or("", |token| token.text.as_str());
-    let brakes = |at: usize| ["brak", "stop", "slow", "halt", "decel"].iter().any(|stem| word(at).starts_with(stem));
-    (0..words.len()).any(|at| match word(at) {
-        "heavy" | "abrupt" | "sudden" | "emergency" => brakes(at + 1),
-        "hard" | "heavily" | "abruptly" | "sharply" | "suddenly" => at > 0 && brakes(at - 1) || brakes(at + 1),
-        "slammed" => (at + 1..at + 4).any(brakes),
-        _ => false,
-    })
-}
-
-/// "ran out into the street", "a jogger crossed the road": of somebody on foot.
-fn runs(words: &[Token], first: usize) -> bool {
-    const RUNS: [&str; 9] =
-        ["ran", "running", "jogging", "jogged", "sprinted", "sprinting", "darted", "dashed", "rushed"];
-    let names = |token: &Token| matches!(token.text.as_str(), "jogger" | "runner");
-    words[first..].iter().take(2).any(|token| RUNS.contains(&token.text.as_str())) || words[..first].iter().any(names)
-}
-
-/// "slowly proceeded", "approached at a high rate of speed", "braked hard", "ran into the street".
-fn manner(reading: &Reading<'_>, number: usize) -> Option<Manner> {
-    const SLOW: [&str; 3] = ["slow", "low", "walking"];
-    const FAST: [&str; 5] = ["high", "extreme", "excessive", "fast", "rapid"];
-    let (frames, tokens) = (&reading.story.frames, &reading.story.tokens);
-    let frame = &frames[number];
-    let sentence = reading.story.sentences[frame.sentence];
-    let end = frames[number + 1..].iter().find(|next| next.first > frame.first).map_or(sentence.end, |next| next.first);
-    let word = |at: usize| tokens[at].text.as_str();
-    // "an extreme rate of speed", "at a high speed", "at walking pace".
-    let speed = |at: usize, of: &[&str]| {
-        of.contains(&word(at))
-            && (at + 1..end.min(at + 4)).any(|next| matches!(word(next), "speed" | "speeds" | "pace"))
-    };
-    let mut words = frame.first.saturating_sub(MANNER_BEFORE).max(sentence.first)..end.min(sentence.end);
-    let around = &tokens[words.start..words.end.max(words.start)];
-    let brakes = matches!(frame.act(), Some(Act::Slow | Act::Stop));
-    if brakes && brakes_hard(around) {
-        return Some(Manner::Fast);
-    }
-    let kind = frame.who.and_then(|who| reading.story.world.actors[who].kind);
-    let walks = kind.and_then(Kind::partner_kind) == Some(PartnerKind::Pedestrian);
-    let named = frame.first.saturating_sub(NAMED_BEFORE).max(sentence.first);
-    if walks
-        && !frame.is_contact()
-        && !matches!(frame.act(), Some(Act::RunRed | Act::RunStop))
-        && runs(&tokens[named..words.end.max(frame.first + 1)], frame.first - named)
-    {
-        return Some(Manner::Fast);
-    }
-    words.find_map(|at| match word(at) {
-        // "touched the slowly moving van".
-        "slowly" if !frame.is_contact() || at < frame.first => Some(Manner::Slow),
-        // "moved forward slightly".
-        "slightly" if at > frame.first && tokens[frame.first..at].iter().any(|token| token.text == "forward") => {
-            Some(Manner::Slow)
-        }
-        // "was slowing when a speeding van hit it".
-        "speeding" if at >= frame.first && !brakes => Some(Manner::Fast),
-        "rapidly" | "quickly" if frame.act() == Some(Act::Follow) => Some(Manner::Fast),
-        _ if at > frame.first && speed(at, &SLOW) => Some(Manner::Slow),
-        _ if at > frame.first && speed(at, &FAST) && !brakes => Some(Manner::Fast),
-        _ => None,
-    })
-}
-
-/// How it was done stands right before a verb, or behind it. [tokens]
-const MANNER_BEFORE: usize = 1;
-
-/// Who does it is named so shortly before. [tokens]
-const NAMED_BEFORE: usize = 3;
 
 fn stands(fact: &ActFact) -> bool {
     matches!(fact.act, Act::Stop | Act::Hold)
