@@ -17,8 +17,11 @@ pub(crate) const STANDS_MPS: f64 = 0.1;
 
 /// A course goes on behind the place of the contact, so far that nobody slows for its end before it. [m]
 pub(crate) fn beyond_m(speed_mps: f64) -> f64 {
-    20.0 + (5.0 * speed_mps).max(speed_mps * speed_mps / (2.0 * COMFORTABLE_MPS2))
+    20.0 + (5.0 * speed_mps).max(0.5 * speed_mps * speed_mps / COMFORTABLE_MPS2).min(MOST_BEYOND_M)
 }
+
+/// A road goes on for no longer. [m]
+const MOST_BEYOND_M: f64 = 280.0;
 
 /// Nothing on wheels, longer than the first, bends its line tighter than the second. [m]
 pub(crate) const WHEELED_M: f64 = 2.5;
@@ -36,9 +39,12 @@ pub(crate) const SLIDES_MPS: f64 = 2.0;
 /// Usual speed on foot. [m/s]
 pub(crate) const WALKS_MPS: f64 = 1.4;
 
-/// Usual speed of who runs on foot; nobody is told to run who is slower than the second. [m/s]
+/// Usual speed of who runs, on foot or on four legs; nobody is told to run who is slower than the second. [m/s]
 pub(crate) const RUNS_MPS: f64 = 3.0;
 pub(crate) const RUNS_LEAST_MPS: f64 = 2.0;
+
+/// Who is told to brake hard. [m/s^2]
+pub(crate) const HARD_MPS2: f64 = 6.0;
 
 /// Usual speed in a turn. [m/s]
 pub(crate) const TURNS_MPS: f64 = 5.0;

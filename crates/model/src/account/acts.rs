@@ -118,7 +118,7 @@ pub struct ActFact {
 pub enum Manner {
     /// "Slowly", "at a low speed".
     Slow,
-    /// "At a high rate of speed".
+    /// "At a high rate of speed"; of who brakes, hard; of who is on foot, at a run.
     Fast,
 }
 

@@ -3,6 +3,7 @@
 use super::Reading;
 use super::across::{begins, is_behind_begin};
 use super::lanes::{comes_onto_a_lane, enters_a_lane, is_about_to_merge, waits_to_change};
+use super::manner::manner;
 use super::sides::{back_to_the_middle, lane_entered, side_of};
 use super::speeds::is_of_last_contact;
 use super::undone::not_done;
@@ -272,57 +273,6 @@ fn is_done(reading: &Reading<'_>, frame: &Frame) -> bool {
         || turned
         || ["complet", "finish", "exit"].iter().any(|start| first.starts_with(start))
 }
-
-/// "slowly proceeded", "approached at a high rate of speed".
-fn manner(reading: &Reading<'_>, number: usize) -> Option<Manner> {
-    const SLOW: [&str; 3] = ["slow", "low", "walking"];
-    const FAST: [&str; 5] = ["high", "extreme", "excessive", "fast", "rapid"];
-    let (frames, tokens) = (&reading.story.frames, &reading.story.tokens);
-    let frame = &frames[number];
-    let sentence = reading.story.sentences[frame.sentence];
-    let end = frames[number + 1..].iter().find(|next| next.first > frame.first).map_or(sentence.end, |next| next.first);
-    let word = |at: usize| tokens[at].text.as_str();
-    // "an extreme rate of speed", "at a high speed".
-    let speed = |at: usize, of: &[&str]| {
-        of.contains(&word(at)) && (at + 1..end.min(at + 4)).any(|next| matches!(word(next), "speed" | "speeds"))
-    };
-    if runs(reading, frame) {
-        return Some(Manner::Fast);
-    }
-    let mut words = frame.first.saturating_sub(MANNER_BEFORE).max(sentence.first)..end.min(sentence.end);
-    words.find_map(|at| match word(at) {
-        // "touched the slowly moving van".
-        "slowly" if !frame.is_contact() || at < frame.first => Some(Manner::Slow),
-        // "moved forward slightly".
-        "slightly" if at > frame.first && tokens[frame.first..at].iter().any(|token| token.text == "forward") => {
-            Some(Manner::Slow)
-        }
-        "speeding" if at >= frame.first => Some(Manner::Fast),
-        _ if at > frame.first && speed(at, &SLOW) => Some(Manner::Slow),
-        _ if at > frame.first && speed(at, &FAST) => Some(Manner::Fast),
-        _ => None,
-    })
-}
-
-/// "A pedestrian ran out from between two trucks", "who was jogging": on foot that is fast.
-fn runs(reading: &Reading<'_>, frame: &Frame) -> bool {
-    const RUNS: [&str; 10] = ["ran", "run", "running", "jog", "sprint", "dash", "dart", "rush", "bolt", "race"];
-    let tokens = &reading.story.tokens;
-    let Some(known) = frame.who.map(|who| &reading.story.world.actors[who]) else { return false };
-    let moves = matches!(frame.act(), Some(Act::Follow | Act::Enter | Act::Cross | Act::PullOut | Act::Swerve));
-    let word = tokens[frame.first..frame.end].iter().find(|token| !is_auxiliary(&token.text));
-    let runner = known.kind_tokens.is_some_and(|(_, end)| matches!(tokens[end - 1].text.as_str(), "jogger" | "runner"));
-    let runs = word.is_some_and(|token| RUNS.iter().any(|run| token.text.starts_with(run)));
-    known.kind == Some(Kind::Pedestrian) && moves && (runs || runner)
-}
-
-/// Words before a verb.
-fn is_auxiliary(word: &str) -> bool {
-    matches!(word, "was" | "were" | "is" | "had" | "has" | "been" | "then" | "suddenly" | "who" | "quickly")
-}
-
-/// How it was done stands right before a verb, or behind it. [tokens]
-const MANNER_BEFORE: usize = 1;
 
 fn stands(fact: &ActFact) -> bool {
     matches!(fact.act, Act::Stop | Act::Hold)

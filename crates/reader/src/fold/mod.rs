@@ -13,6 +13,7 @@ mod entry;
 mod flashback;
 mod hides;
 mod lanes;
+mod manner;
 mod movement;
 mod nobody;
 mod nominal;

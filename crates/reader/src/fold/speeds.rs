@@ -8,7 +8,7 @@ use crate::world::{Actor, SUBJECT, same_kind};
 use recrash_model::account::{Act, Fact, Kind, Speed, SpeedMeaning};
 use recrash_model::record::MPS_PER_MPH;
 
-/// "slowed to about 6 mph", "accelerated to 5 mph": the words before the number, where nothing is told of a later speed. "Up to 10 mph" is
+/// "slowed to about 6 mph", "accelerated to 5 mph", "the speed fell from 24 mph to 12 mph": the words before the number, where nothing is told of a later speed. "Up to 10 mph" is
 /// the most that it reached.
 fn slowed_to(before: &[Token], frame: &Frame) -> bool {
     if before.windows(2).any(|pair| pair[0].text == "up" && pair[1].text == "to") {
@@ -17,9 +17,18 @@ fn slowed_to(before: &[Token], frame: &Frame) -> bool {
     let to = before.iter().rev().find(|token| {
         !matches!(token.text.as_str(), "about" | "approximately" | "around" | "roughly" | "only" | "just" | "~")
     });
-    matches!(frame.act(), Some(Act::Slow | Act::Accelerate))
+    matches!(frame.act(), Some(Act::Slow | Act::Accelerate | Act::Fall))
         && frame.happened()
         && to.is_some_and(|token| token.text == "to")
+}
+
+/// "The two touched, and the AV was traveling at 6 mph at that moment": told behind a contact, of when that was.
+fn at_that_moment(reading: &Reading<'_>, number: usize, at: usize) -> bool {
+    let tokens = &reading.story.tokens;
+    let words: Vec<&str> = tokens[at..tokens.len().min(at + 8)].iter().map(|token| token.text.as_str()).collect();
+    let then = |three: &[&str]| matches!(three, ["at", "that", "moment" | "time" | "instant" | "point"]);
+    let tells = |frame: &&Frame| !frame.aside && (frame.is_contact() || frame.act().is_some());
+    words.windows(3).any(then) && reading.story.frames[..number].iter().rev().find(tells).is_some_and(Frame::is_contact)
 }
 
 /// "at the time of impact it was doing 30 mph", "was doing 30 mph at the moment of contact", "the crash signal was logged at 30 mph": no
@@ -229,7 +238,9 @@ pub(super) fn speeds(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<Speed>> {
         let named = owner_at(reading, sentence.first, at);
         let named = named.map(|owner| (owner, reading.story.frames.iter().any(touches)));
         let owner = owner_of_speed(reading, sentence.first, at).or(named);
-        let then = owner.is_some_and(|(_, impact)| impact) || at_impact(tokens, (sentence.first, sentence.end), at);
+        let then = owner.is_some_and(|(_, impact)| impact)
+            || at_impact(tokens, (sentence.first, sentence.end), at)
+            || at_that_moment(reading, number, at);
         let impact = then || is_until_contact(reading, number, at) || is_of_last_contact(reading, frame.sentence);
         let in_time = impact || !reading.is_after(number);
         let who = owner.map(|(owner, _)| owner).or(frame.who);

@@ -89,6 +89,13 @@ fn acts(party: &Party) -> String {
     all.join(" ")
 }
 
+/// How what somebody did before the contact was done, where that is told.
+fn manners(party: &Party) -> String {
+    let before = party.acts.iter().filter(|fact| !fact.after_contact);
+    let told = before.filter_map(|fact| Some(format!("{} {}", coded(&fact.act), coded(&fact.manner?))));
+    told.collect::<Vec<_>>().join("; ")
+}
+
 fn over(fact: &Fact<Astride>) -> String {
     let side = fact.value.side.map(|side| format!("_{}", coded(&side))).unwrap_or_default();
     format!("{}{side} {}", coded(&fact.value.line), coded(&fact.value.when))
@@ -174,6 +181,8 @@ pub fn facts(account: &Account) -> BTreeMap<&'static str, String> {
         ("cp_movement", name(&partner.movement)),
         ("cp_lane", name(&partner.lane)),
         ("cp_acts", acts(partner)),
+        ("sv_manner", manners(sv)),
+        ("cp_manner", manners(partner)),
         ("cp_zones", zones(partner)),
         ("cp_ran", if ran { "yes".to_owned() } else { "no".to_owned() }),
     ])

@@ -107,7 +107,7 @@ fn wanted_mps(told: &Told, recorded: &ActorPlan) -> f64 {
         _ => None,
     });
     let stood = told.sv.state.stands() || told.sv.stood_first || told.sv.state == ContactState::SettingOff;
-    let least_mps = if stood { told.choices.rolling_mps } else { LEAST_WANTED_MPS };
+    let least_mps = if stood { told.rolling_mps() } else { LEAST_WANTED_MPS };
     sets_out.fold(recorded.speed_mps.max(least_mps), f64::max)
 }
 

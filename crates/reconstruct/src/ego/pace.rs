@@ -4,7 +4,7 @@ use crate::ground::way::Ground;
 use crate::pace::last::{BACKS_EARLIER_S, last_pace};
 use crate::pace::lead::{self, Lead, MOVES_UP_M};
 use crate::pace::plain::{
-    Pace, SETS_OFF_MPS2, STANDING, STOPPING_MPS2, first_time, pace, start_over, starts_and_slows, when,
+    Pace, SETS_OFF_MPS2, STANDING, STOPPING_MPS2, braked_hard, first_time, pace, start_over, starts_and_slows, when,
 };
 use crate::told::crash::Told;
 use crate::told::doing::Doing;
@@ -59,7 +59,7 @@ pub(crate) fn ego_paces(told: &Told, ground: &Ground, sv_s_m: f64) -> (Option<Le
             }
             false => told.choices.stood_s,
         };
-    let stood_s = stood_s.min(contact_s - told.choices.rolling_mps / STOPPING_MPS2 - LEAST_ROLL_S);
+    let stood_s = stood_s.min(contact_s - told.rolling_mps() / STOPPING_MPS2 - LEAST_ROLL_S);
     let stood_s = comes_over_line(told, ground, sv_s_m).map_or(stood_s, |most_s| stood_s.min(most_s));
     let stood_s = if told.backs_early { LEAST_STOOD_S } else { stood_s };
     let usual = from_line(told, ground, sv_s_m)
@@ -68,7 +68,10 @@ pub(crate) fn ego_paces(told: &Told, ground: &Ground, sv_s_m: f64) -> (Option<Le
         .or_else(|| towards_who_stands(told))
         .or_else(|| out_of_line(told))
         .or_else(|| slows_in_turn(told, past_line_m(told, ground, sv_s_m)))
-        .unwrap_or_else(|| braked_earlier(pace(contact_s, sv, told.choices.rolling_mps, stood_s), longer_s));
+        .unwrap_or_else(|| braked_earlier(pace(contact_s, sv, told.rolling_mps(), stood_s), longer_s));
+    // So does who slows behind one that brakes hard.
+    let behind = told.origin == Origin::Ahead && told.cp.brakes_hard;
+    let usual = if sv.brakes_hard || behind { braked_hard(usual) } else { usual };
     let begins_s = match sv.state.stands() {
         true => contact_s - choices.stood_s - longer_s,
         false if usual.speed_mps > 0.0 => return (None, usual),
@@ -80,7 +83,8 @@ pub(crate) fn ego_paces(told: &Told, ground: &Ground, sv_s_m: f64) -> (Option<Le
     let stood = sv.phases.iter().skip_while(|phase| **phase != Phase::Stands);
     let times = stood.filter(|phase| **phase == Phase::Drives).count().max(1) as f64;
     let waited_s = if sv.state.stands() { 0.0 } else { longer_s.max(0.0) };
-    match lead::lead(&sv.phases, begins_s, choices.rolling_mps, (moved_up_m / times).max(least_m), waited_s) {
+    let lead = lead::lead(&sv.phases, begins_s, told.rolling_mps(), (moved_up_m / times).max(least_m), waited_s);
+    match lead.map(|lead| if sv.came_hard { lead.came_hard() } else { lead }) {
         Some(lead) if sv.state.stands() => (Some(lead), STANDING),
         lead => (lead, usual),
     }
@@ -145,7 +149,7 @@ fn out_of_line(told: &Told) -> Option<Pace> {
     let least_m = LEAVES_BY * (aside.to_t_m - aside.from_t_m).abs();
     let just_m = sv.speed_mps * (JUST_S - 0.5 * sv.speed_mps / SETS_OFF_MPS2);
     let driven_m = if sets_off { least_m.min(just_m) } else { least_m };
-    let usual_m = pace(told.contact_s, sv, told.choices.rolling_mps, told.choices.stood_s).driven_m;
+    let usual_m = pace(told.contact_s, sv, told.rolling_mps(), told.choices.stood_s).driven_m;
     let plain = stood && sv.slowed_from.is_none() && driven_m > usual_m;
     start_over(told.contact_s, sv.speed_mps, driven_m).filter(|_| plain)
 }
@@ -158,7 +162,7 @@ fn past_line_m(told: &Told, ground: &Ground, sv_s_m: f64) -> Option<f64> {
 /// How long an ego that has come to a stop in a junction may have stood there, so that it is seen to come over its stop line. [s]
 fn comes_over_line(told: &Told, ground: &Ground, sv_s_m: f64) -> Option<f64> {
     let past_m = past_line_m(told, ground, sv_s_m).filter(|past_m| *past_m > 0.0)?;
-    let rolling_mps = told.choices.rolling_mps;
+    let rolling_mps = told.rolling_mps();
     let most_s = told.contact_s - 0.5 * rolling_mps / STOPPING_MPS2 - (past_m + BEFORE_LINE_M) / rolling_mps;
     (most_s > LEAST_STOOD_S).then_some(most_s)
 }
@@ -238,6 +242,11 @@ fn slows_in_turn(told: &Told, past_line_m: Option<f64>) -> Option<Pace> {
 const SLOW_BACKER_MPS: f64 = 0.6;
 
 impl Told {
+    /// How fast an ego came along that comes to a stop. [m/s]
+    pub(crate) fn rolling_mps(&self) -> f64 {
+        self.sv.rolled_mps.unwrap_or(self.choices.rolling_mps)
+    }
+
     /// Whether the ego is told to have stood before the partner began to back, which does so very slowly: it has stood there from the start.
     fn stands_for_slow_backer(&self) -> bool {
         let backs = self.cp.state == ContactState::Reversing && self.cp.speed_mps <= SLOW_BACKER_MPS;

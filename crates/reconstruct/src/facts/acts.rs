@@ -61,6 +61,10 @@ const BESIDE_M: f64 = 0.3;
 /// One that is at more than this to another's way, and to the way back, stands across it. [rad]
 const ALONG_RAD: f64 = 0.9;
 
+/// Who brakes hard loses so much in so long. [m/s, steps]
+const BRAKES_BY_MPS: f64 = 1.6;
+const BRAKES_OVER: usize = 4;
+
 /// Who comes from the kerb, or draws up at it, has turned by so much where it does not go aside. [deg]
 const BENDS_DEG: f64 = 8.0;
 
@@ -279,11 +283,17 @@ impl Way<'_> {
             towards(math::wrap_angle(self.states[then].heading - self.states[at].heading).to_degrees())
         };
         let slower = |at: usize, then: usize| self.speed(at) - self.speed(then);
+        let until_last = |at: usize| at.min(self.last());
         let backs = || (from..=self.last()).find(|at| self.speed(*at) < -STANDS_MPS);
         let changes = |at: usize, then: usize| {
             let along = math::wrap_angle(self.states[then].heading - self.states[at].heading).abs() < CHANGES_LANES_RAD;
             if along { aside(at, then) } else { 0.0 }
         };
+        if doing.hard {
+            let around = |at: usize| at.saturating_sub(LONGEST)..until_last(at + LONGEST);
+            let brakes = |at: &usize| around(*at).any(|at| slower(at, until_last(at + BRAKES_OVER)) > BRAKES_BY_MPS);
+            return self.begins(Doing { hard: false, ..doing }, from).filter(brakes);
+        }
         match least(doing.act)? {
             Least::Aside(_) if doing.act == Act::LaneChange && doing.over && !doing.begun => {
                 self.comes_to(from, CHANGED_LANES_M, changes)
@@ -351,7 +361,8 @@ pub(super) fn words(told: &[Doing]) -> String {
             Some(LeftRight::Right) => " to the right",
             None => "",
         };
-        format!("{}{verb}{side}", if doing.begun { "began: " } else { "" })
+        let hard = if doing.hard { " hard" } else { "" };
+        format!("{}{verb}{hard}{side}", if doing.begun { "began: " } else { "" })
     };
     told.iter().map(word).collect::<Vec<_>>().join(", ")
 }

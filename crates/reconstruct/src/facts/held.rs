@@ -10,7 +10,7 @@ use crate::facts::lane::{lane, lane_words};
 use crate::facts::movement::{self, Way};
 use crate::facts::origin::{begins_elsewhere, comes_by_lane, origin, origin_words};
 use crate::facts::seen::Seen;
-use crate::facts::state::{changed, stands_at_stop, state, stood};
+use crate::facts::state::{came_slowly, changed, stands_at_stop, state, stood};
 use crate::facts::strays::until_touched;
 use crate::facts::{edge, keeping, phases, signals, things, thrown};
 use crate::told::crash::Told;
@@ -219,6 +219,7 @@ impl<'a> Crash<'a> {
                 && (stood || !side.stood_first)
                 && (slowed || side.slowed_from.is_none())
                 && (gained || !side.gains)
+                && (side.rolled_mps.is_none_or(|mps| came_slowly(track, time_s, mps)))
                 && as_told
                 && in_order;
         let (mut expected, mut observed) = (side.state.label().to_owned(), format!("{:.2} m/s", seen.speed()));
@@ -235,6 +236,9 @@ impl<'a> Crash<'a> {
         }
         if side.runs() {
             expected += ", running";
+        }
+        if let Some(mps) = side.rolled_mps {
+            expected += &format!(", before at {mps:.1} m/s");
         }
         if side.phases.is_empty() {
             expected += before(side.stood_first, side.slowed_from.is_some(), side.gains);

@@ -48,9 +48,11 @@ const BEGUN_DEG: f64 = 8.0;
 /// Who goes straight on along a lane, and is not told to have left it, has turned by no more. [deg]
 const KEEPS_DEG: f64 = 16.0;
 
-/// Nor has it swung by so much on its way, from one side to the other, nor is it so far beside its line. [deg, m]
+/// Nor has it swung by so much on its way, from one side to the other, nor was it so far beside its line, nor came it back to that by so much.
+/// [deg, m]
 const SWINGS_DEG: f64 = 25.0;
 const KEEPS_M: f64 = 2.2;
+const COMES_BACK_M: f64 = 0.8;
 
 /// Who comes towards another faces it by more than this. [rad]
 const FACES_RAD: f64 = 2.0;
@@ -131,7 +133,7 @@ impl Way<'_> {
         let [right, left] = self.turned_between_deg();
         match gets_by {
             true => left.max(-right) < SWINGS_DEG,
-            false => left - right < SWINGS_DEG && self.beside_m().abs() < KEEPS_M,
+            false => left - right < SWINGS_DEG && self.strays_m() < KEEPS_M && self.comes_back_m() < COMES_BACK_M,
         }
     }
 
@@ -139,6 +141,19 @@ impl Way<'_> {
     fn beside_m(&self) -> f64 {
         let (first, last) = (&self.until()[0], &self.until()[self.until().len() - 1]);
         Vec2::from_heading(first.heading).cross(last.position() - first.position())
+    }
+
+    /// How far it was beside that at most on its way. [m]
+    fn strays_m(&self) -> f64 {
+        let first = &self.until()[0];
+        let beside_m =
+            |state: &ActorState| Vec2::from_heading(first.heading).cross(state.position() - first.position());
+        self.until().iter().map(|state| beside_m(state).abs()).fold(0.0, f64::max)
+    }
+
+    /// How far it came back from there. [m]
+    fn comes_back_m(&self) -> f64 {
+        self.strays_m() - self.beside_m().abs()
     }
 
     /// By how much it has come nearer to the other's line, along the road. [m]

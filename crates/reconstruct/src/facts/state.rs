@@ -32,6 +32,19 @@ pub(super) fn changed(track: &ActorTrack, time_s: f64) -> (bool, bool) {
     (any(&|mps| mps > now_mps + CHANGED_MPS), any(&|mps| mps < now_mps - CHANGED_MPS.min(0.25 * now_mps)))
 }
 
+/// Who came along slowly was no faster than this share more. [1]
+const SLOWLY_SHARE: f64 = 1.25;
+
+/// Whether somebody came along no faster than so.
+pub(super) fn came_slowly(track: &ActorTrack, time_s: f64, told_mps: f64) -> bool {
+    fastest(track, time_s) <= SLOWLY_SHARE * told_mps
+}
+
+fn fastest(track: &ActorTrack, time_s: f64) -> f64 {
+    let until = ((time_s * 10.0).floor() as usize).min(track.states.len() - 1);
+    track.states[..=until].iter().map(|state| state.velocity().length()).fold(0.0, f64::max)
+}
+
 /// Whether somebody stood before a time.
 pub(super) fn stood(track: &ActorTrack, time_s: f64) -> bool {
     let until = ((time_s * 10.0).floor() as usize).min(track.states.len() - 1);

@@ -12,7 +12,10 @@ use recrash_model::rollout::ActorTrack;
 const ASIDE: f64 = 0.35;
 const CROSSES_RAD: (f64, f64) = (0.6, 2.5);
 
-/// Whether who touched the partner first came from where it is told to.
+/// Who is told to have come fast came to so much at least. [m/s]
+const FAST_MPS: f64 = 12.0;
+
+/// Whether who touched the partner first came from where it is told to, and as fast as it is.
 pub(super) fn comes_as_told(told: &Told, ego: &ActorTrack, [partner, other]: [&ActorTrack; 2], step: usize) -> bool {
     let road = Vec2::from_heading(ego.states[0].heading);
     let met = partner.states[step.min(partner.states.len() - 1)].position();
@@ -26,6 +29,10 @@ pub(super) fn comes_as_told(told: &Told, ego: &ActorTrack, [partner, other]: [&A
     let way = other.states[step.min(other.states.len() - 1)].position() - of_ego;
     let is_ahead = road.dot(way) > 0.0 && road.cross(way).abs() < 0.5 * LANE_M;
     let turned = math::wrap_angle(other.states[0].heading - ego.states[0].heading).abs();
+    let fastest = other.states[..=step.min(other.states.len() - 1)].iter().map(|state| state.velocity().length());
+    if told.pusher_fast && fastest.fold(0.0, f64::max) < FAST_MPS {
+        return false;
+    }
     match told.thrower {
         None => true,
         Some(Thrower::Beside(side)) => on_side(side),

@@ -251,7 +251,7 @@ pub(super) fn junction(told: &Told, crossing: bool) -> Ground {
         lane_m: LANE_M,
     };
     let ground = with_way(map, vec!["own-".to_owned(), format!("{exit_name}+")], across, places, true);
-    let ground = if at_line.is_empty() { ground.at_walk(told) } else { ground };
+    let ground = if at_line.is_empty() { ground.at_walk(told).in_their_lanes(told) } else { ground };
     let ground = if at_kerb { ground.at_kerb() } else { ground }.over_line(told);
     if told.sv.turned { ground.after_turn() } else { ground }
 }

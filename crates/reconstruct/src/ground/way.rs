@@ -4,7 +4,9 @@ use crate::ground::pieces::{APPROACH_M, corner_m};
 use crate::told::aside::Aside;
 use crate::told::astride::INSIDE_M;
 use crate::told::crash::Told;
-use recrash_model::account::{LaneLine, LaneWord, LeftRight};
+use crate::told::side::Turning;
+use crate::usual::LANE_M;
+use recrash_model::account::{LaneLine, LaneWord, LeftRight, Origin};
 use recrash_model::geometry::{Pose, Vec2};
 use recrash_model::math;
 use recrash_model::scenario::{GraphMap, MapSpec, StripKind};
@@ -23,6 +25,9 @@ const TURNED_SINE: f64 = 0.5;
 /// Who crosses short of the crosswalk does so before where the junction begins. [m]
 const SHORT_M: f64 = 2.0;
 
+/// So far behind where the junction begins the lanes of others are looked for. [0.1 m]
+const IN_LANES: u32 = 400;
+
 /// Who stands at the right edge of its lane stands so far to the right of its middle. [m]
 const LANE_EDGE_M: f64 = 0.6;
 
@@ -40,6 +45,8 @@ pub(crate) struct Ground {
     pub(crate) off_route_m: f64,
     /// Places along it to try. [m]
     pub(super) places: Vec<f64>,
+    /// The same, of who comes straight. [m]
+    straight_at: Vec<f64>,
     /// Whether crossing roads are there.
     pub(crate) junction: bool,
     /// In one direction, and in the other.
@@ -65,7 +72,12 @@ pub(crate) struct Ground {
 
 impl Ground {
     pub(crate) fn places(&self) -> Vec<f64> {
-        self.places.clone()
+        [self.places.as_slice(), &self.straight_at].concat()
+    }
+
+    /// Whether a place is tried for who comes straight alone.
+    pub(crate) fn is_for_straight(&self, s_m: f64) -> bool {
+        self.straight_at.contains(&s_m)
     }
 
     /// Which road of the map the ego comes along.
@@ -132,6 +144,34 @@ impl Ground {
         };
         let places = touched_m.into_iter().flat_map(|touched_m| ALONG_WALK_M.map(|along_m| touched_m + along_m));
         self.places = places.chain(self.places.iter().copied()).collect();
+        self
+    }
+
+    /// The same, with the places last at which the touched part of the ego is in the middle of a lane by which somebody comes straight across its
+    /// way, so that who does need not bend for that.
+    pub(super) fn in_their_lanes(mut self, told: &Told) -> Self {
+        let ways = match told.origin {
+            Origin::Opposite if told.sv.turning == Turning::Left => {
+                Some((Vec2::new(0.0, 1.0), self.opposing_y_m(), self.oncoming))
+            }
+            Origin::Cross { side: LeftRight::Left } => {
+                Some((Vec2::new(1.0, 0.0), (0.5 - self.lanes as f64) * LANE_M, self.lanes))
+            }
+            Origin::Cross { side: LeftRight::Right } => Some((Vec2::new(1.0, 0.0), 0.5 * LANE_M, self.lanes)),
+            _ => None,
+        };
+        let straight = self.junction && told.cp.turning == Turning::No && !told.cp.state.stands();
+        let Some((across, first_m, lanes)) = ways.filter(|_| straight && told.comes_along_lanes()) else { return self };
+        let part_m = told.touched_ahead_m();
+        let touched_m = |s_m: f64| {
+            let pose = self.sv_pose(s_m);
+            across.dot(pose.position + Vec2::from_heading(pose.heading) * part_m)
+        };
+        let found = (0..lanes).filter_map(|lane| {
+            let lane_m = first_m + lane as f64 * LANE_M;
+            (0..IN_LANES).map(|step| APPROACH_M + 0.1 * f64::from(step)).find(|s_m| touched_m(*s_m) >= lane_m)
+        });
+        self.straight_at = found.collect();
         self
     }
 
@@ -244,6 +284,7 @@ pub(super) fn with_way(map: GraphMap, route: Vec<String>, across: Across, places
         way: Rc::new(way),
         off_route_m,
         places,
+        straight_at: Vec::new(),
         junction,
         lanes: across.lanes,
         oncoming: across.oncoming,

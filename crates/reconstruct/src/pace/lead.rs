@@ -1,6 +1,6 @@
 //! What somebody did before its last phase: it came and stood, moved up and stood again, or reversed first.
 
-use crate::pace::plain::{Pace, first_time, when};
+use crate::pace::plain::{Pace, braked_hard, first_time, when};
 use crate::told::phase::Phase;
 use recrash_model::geometry::{Pose, Vec2};
 use recrash_model::scenario::{self, ActorPlan, Deed, Leg, Place};
@@ -86,6 +86,17 @@ impl Lead {
             _ => return,
         };
         self.acts.insert(at, when(begins_s, Deed::Shift { to_t_m, over_m }));
+    }
+
+    /// The same, where it came along and braked hard.
+    pub(crate) fn came_hard(mut self) -> Self {
+        let stops = matches!(self.acts.first(), Some(scenario::Act { deed: Deed::Stop { .. }, .. }));
+        if let Some((way_m, _)) = self.stretches.first_mut().filter(|_| stops && self.speed_mps > 0.0) {
+            let came = Pace { speed_mps: self.speed_mps, acts: vec![self.acts[0].clone()], driven_m: *way_m };
+            let Pace { mut acts, driven_m, .. } = braked_hard(came);
+            (self.acts[0], *way_m) = (acts.remove(0), driven_m);
+        }
+        self
     }
 
     /// Forward all the way, and then the last pace.

@@ -2,6 +2,7 @@
 
 use crate::told::side::Side;
 use crate::told::speeds::{GAINS_MPS, STARTS_AND_SLOWS_MPS};
+use crate::usual::HARD_MPS2;
 use recrash_model::account::ContactState;
 use recrash_model::rollout::STEP_S;
 use recrash_model::scenario::{Act, Deed, Trigger};
@@ -116,6 +117,35 @@ pub(crate) fn pace(contact_s: f64, side: &Side, rolling_mps: f64, stood_s: f64) 
             Pace { speed_mps: side.speed_mps, acts: Vec::new(), driven_m: side.speed_mps * contact_s }
         }
     }
+}
+
+/// The same of who brakes hard: as late as it comes to the same speed at the same time, from farther off.
+pub(crate) fn braked_hard(pace: Pace) -> Pace {
+    let mut from_mps = pace.speed_mps;
+    let mut last = None;
+    for (number, act) in pace.acts.iter().enumerate() {
+        let (to_mps, rate_mps2) = match act.deed {
+            Deed::Speed { to_mps, rate_mps2 } => (to_mps, rate_mps2),
+            Deed::Stop { rate_mps2, .. } => (0.0, rate_mps2),
+            _ => continue,
+        };
+        if to_mps < from_mps && rate_mps2 < HARD_MPS2 {
+            last = Some((number, from_mps, to_mps, rate_mps2));
+        }
+        from_mps = to_mps;
+    }
+    let Some((number, from_mps, to_mps, rate_mps2)) = last else { return pace };
+    let by_mps = from_mps - to_mps;
+    let later_s = (by_mps * (rate_mps2.recip() - HARD_MPS2.recip()) * 10.0).floor() / 10.0;
+    let Some(Trigger::TimeS(from_s)) = pace.acts[number].when else { return pace };
+    let rate_mps2 = by_mps / (by_mps / rate_mps2 - later_s);
+    let deed = match pace.acts[number].deed {
+        Deed::Stop { at_m, .. } => Deed::Stop { rate_mps2, at_m },
+        _ => Deed::Speed { to_mps, rate_mps2 },
+    };
+    let mut acts = pace.acts;
+    acts[number] = when(from_s + later_s, deed);
+    Pace { acts, driven_m: pace.driven_m + 0.5 * later_s * by_mps, ..pace }
 }
 
 /// It brakes down to its speed at the contact.

@@ -5,8 +5,8 @@ use crate::ground::pieces::corner_m;
 use crate::pace::last::{BACKS_EARLIER_S, BEHIND_M, FOLLOWS_S, last_pace};
 use crate::pace::lead::{self, Lead, MOVES_UP_M};
 use crate::pace::plain::{
-    Pace, SETS_OFF_MPS2, STANDING, first_time, sets_off, slows, slows_abreast, start_after, start_over, stops_over,
-    when,
+    Pace, SETS_OFF_MPS2, STANDING, braked_hard, first_time, sets_off, slows, slows_abreast, start_after, start_over,
+    stops_over, when,
 };
 use crate::partner::beside::{self, PULL_OUT_M};
 use crate::told::crash::Told;
@@ -27,6 +27,13 @@ use recrash_model::template::Movement;
 
 /// What the partner did before its last phase where that is told, or follows from what the ego did; and its last pace.
 pub(super) fn partner_paces(told: &Told, staging: &Staging) -> (Option<Lead>, Pace) {
+    let (lead, last) = usual_paces(told, staging);
+    let lead = lead.map(|lead| if told.cp.came_hard { lead.came_hard() } else { lead });
+    (lead, if told.cp.brakes_hard { braked_hard(last) } else { last })
+}
+
+/// The same, where it brakes as is usual.
+fn usual_paces(told: &Told, staging: &Staging) -> (Option<Lead>, Pace) {
     let (cp, contact_s) = (&told.cp, told.contact_s);
     let (ego_lead, ego) = ego_paces(told, &staging.ground, staging.sv_s_m);
     let ego_m = ego.driven_m + ego_lead.as_ref().map_or(0.0, Lead::driven_m);

@@ -299,11 +299,14 @@ fn as_the_ego(told: &Told, staging: &Staging) -> Option<Pace> {
     }
 }
 
+/// Who is told to have come fast does so. [m/s]
+const PUSHES_FAST_MPS: f64 = 14.0;
+
 /// How much faster than the partner is who throws it: of two that are alike half of it is left, where told; and no faster than is usual
 /// on a street, where it can be. [m/s]
 fn push_mps(told: &Told, partner_mps: f64) -> f64 {
     match told.cp.impact_mps {
-        None if told.pusher_fast => (told.fast_mps() - partner_mps).max(LEAST_THROW_MPS),
+        _ if told.pusher_fast => (told.fast_mps().max(PUSHES_FAST_MPS) - partner_mps).max(LEAST_THROW_MPS),
         Some(mps) => (2.0 * (mps - partner_mps)).clamp(LEAST_THROW_MPS, PUSH_MPS),
         None => (STREET_MPS - partner_mps).clamp(LEAST_THROW_MPS, PUSH_MPS),
     }

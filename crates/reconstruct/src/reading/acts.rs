@@ -4,7 +4,8 @@ use crate::reading::words::text;
 use crate::told::doing::{Doing, least};
 use crate::told::zones::side_of;
 use recrash_model::account::{
-    Act, ActFact, ContactState, Fact, Kind, LeftRight, Other as OtherParty, Party, Source, StandReason, told as told_of,
+    Act, ActFact, ContactState, Fact, Kind, LeftRight, Manner, Other as OtherParty, Party, Source, StandReason,
+    told as told_of,
 };
 use recrash_model::template::Movement;
 use recrash_model::zones::ContactZone;
@@ -65,7 +66,8 @@ pub(super) fn told(party: &Party, state: ContactState) -> Vec<Doing> {
         standing = stands(fact.act) || standing && waits && !goes;
         if !skipped {
             let (side, begun, within_lane) = (fact.side, fact.begun, stays_in_lane(fact));
-            list.push(Doing { side, begun, over, within_lane, ..Doing::plain(fact.act, step, after_other) });
+            let hard = is_hard(fact);
+            list.push(Doing { side, begun, over, within_lane, hard, ..Doing::plain(fact.act, step, after_other) });
         }
     }
     // "Stopped at the kerb" of who pulls out: it stood there.
@@ -80,6 +82,11 @@ pub(super) fn told(party: &Party, state: ContactState) -> Vec<Doing> {
     }
     list.dedup_by_key(|doing| (doing.act, doing.side, doing.begun));
     list
+}
+
+/// Whether somebody is told to have braked hard.
+pub(super) fn is_hard(fact: &ActFact) -> bool {
+    matches!(fact.act, Act::Slow | Act::Stop) && fact.manner == Some(Manner::Fast)
 }
 
 /// Whether somebody is told to have gone aside and not to have left its lane: "moved to the right within its lane".

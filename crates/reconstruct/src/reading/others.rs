@@ -1,5 +1,6 @@
 //! Others than the two: who is told of besides them, and why the ego stood.
 
+use crate::reading::acts::is_hard;
 use crate::reading::story::{
     Story, has_siren, is_at_junction, is_parked, lets_in_at_green, parks_backwards, stays_close,
 };
@@ -82,18 +83,18 @@ pub(super) fn pusher(account: &Account) -> Option<Kind> {
     account.others.iter().find(|other| other.touched_partner).map(|other| other.kind.value)
 }
 
+/// Whether who touched the partner first is told to have come fast.
+pub(super) fn pusher_fast(account: &Account) -> bool {
+    let fast = |fact: &ActFact| fact.manner == Some(Manner::Fast) && !is_hard(fact);
+    account.others.iter().any(|other| other.touched_partner && before_contact(other).any(fast))
+}
+
 /// Whether who touched the partner first is told to stand, and to do nothing else.
 pub(super) fn pusher_stands(account: &Account) -> bool {
     let stands = |fact: &ActFact| matches!(fact.act, Act::Park | Act::Hold);
     let touched = account.others.iter().find(|other| other.touched_partner);
     let before = touched.map(|other| before_contact(other).map(stands).collect::<Vec<_>>());
     before.is_some_and(|list| !list.is_empty() && list.into_iter().all(|stands| stands))
-}
-
-/// Whether who touched the partner first is told to have come fast.
-pub(super) fn pusher_fast(account: &Account) -> bool {
-    let touched = account.others.iter().find(|other| other.touched_partner);
-    touched.is_some_and(|other| before_contact(other).any(|fact| fact.manner == Some(Manner::Fast)))
 }
 
 /// Whether it is somebody on foot or on a cycle.

@@ -1,9 +1,12 @@
 //! What is told of one side of the crash.
 
+use crate::reading::acts::is_hard;
 use crate::reading::turns::{last_way, leaves_line, turned_before, turned_before_its_stop, went_on_straight};
 use crate::reading::{acts, phases, sizes, things, words};
 use crate::told::side::{Side, Slowed, Turning};
 use crate::told::sizes::size_of;
+use crate::told::speeds::SLOWLY_MPS;
+use crate::usual::ROLLING_MPS;
 use recrash_model::account::{
     Act, ActFact, ContactState, Control, ControlDevice, Kind, KindGroup, LeftRight, Manner, Obeyed, Party, SignalState,
     Source, SpeedMeaning, Standing, told,
@@ -109,6 +112,8 @@ pub(super) fn side(party: &Party, kind: Option<Kind>, assumed: &mut Vec<String>,
     let stopped_aside = stopped.filter(|fact| leaves_line(fact.act) || fact.act == Act::Pass && fact.side.is_some());
     let aside = stopped_aside.and_then(|fact| fact.side).or(aside);
     let stopped_aside = stopped_aside.map(|fact| fact.act);
+    let stops = who == "ego" && state == ContactState::Stopped;
+    let rolled_mps = told_mps(SpeedMeaning::Approach).filter(|mps| (LEAST_ROLLED_MPS..ROLLING_MPS).contains(mps));
     let gains = gained_last(party) && state == ContactState::Moving && !stood_first && phases.is_empty();
     let changed_lanes = matches!(movement, None | Some(Movement::Straight))
         && party.acts.iter().any(|fact| fact.act == Act::LaneChange && !fact.after_contact && !fact.begun);
@@ -124,6 +129,9 @@ pub(super) fn side(party: &Party, kind: Option<Kind>, assumed: &mut Vec<String>,
         returns: returns(party),
         gains,
         reacts: false,
+        brakes_hard: brakes_hard(party, true),
+        came_hard: brakes_hard(party, false),
+        rolled_mps: rolled_mps.or(rolled_slowly(party)).filter(|_| stops && phases.is_empty()),
         slowed_early: slowed_early(party),
         stopped_aside,
         turns_later: false,
@@ -187,13 +195,30 @@ fn is_under_way(stop: &ActFact) -> bool {
     text.split(|letter: char| !letter.is_alphanumeric()).any(|word| matches!(word, "coming" | "stopping" | "braking"))
 }
 
+/// Whether somebody is told to have braked hard since it last set off, or before that.
+fn brakes_hard(party: &Party, since: bool) -> bool {
+    let before = || party.acts.iter().filter(|fact| !fact.after_contact);
+    let set_off = before().filter(|fact| fact.act == Act::SetOff).map(|fact| fact.step).max();
+    before().any(|fact| (Some(fact.step) > set_off) == since && is_hard(fact))
+}
+
+/// Who is slower than this before its stop stood before that. [m/s]
+const LEAST_ROLLED_MPS: f64 = 1.5;
+
+/// Whether somebody is told to have come along slowly before it first stopped: nobody who does is faster than this. [m/s]
+fn rolled_slowly(party: &Party) -> Option<f64> {
+    let stops = party.acts.iter().position(|fact| fact.act == Act::Stop && !fact.after_contact)?;
+    let last = party.acts[..stops].iter().rfind(|fact| fact.act == Act::Follow)?;
+    (last.manner == Some(Manner::Slow)).then_some(SLOWLY_MPS.1)
+}
+
 /// How fast somebody is told to have driven last, since it stood; who moved slowly where no word of it stands with the last that it did
 /// went on so.
 fn manner(party: &Party) -> Option<Manner> {
     let before = || party.acts.iter().filter(|fact| !fact.after_contact);
     let stood =
         before().filter(|fact| matches!(fact.act, Act::Stop | Act::Hold) && !fact.begun).map(|fact| fact.step).max();
-    let since = before().filter(|fact| Some(fact.step) > stood);
+    let since = before().filter(|fact| Some(fact.step) > stood && !is_hard(fact));
     let last =
         since.filter(|fact| fact.manner.is_some() || fact.act == Act::Accelerate).max_by_key(|fact| fact.step)?;
     last.manner

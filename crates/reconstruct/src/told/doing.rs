@@ -15,6 +15,8 @@ pub(crate) struct Doing {
     pub(crate) implied: bool,
     /// It is told not to have left its lane by that.
     pub(crate) within_lane: bool,
+    /// It braked hard.
+    pub(crate) hard: bool,
     /// Its place in the order of all acts, and that of the other one's act behind which the words put it.
     pub(crate) step: u32,
     pub(crate) after_other: Option<u32>,
@@ -23,7 +25,17 @@ pub(crate) struct Doing {
 impl Doing {
     /// An act of which no more is told than when.
     pub(crate) const fn plain(act: Act, step: u32, after_other: Option<u32>) -> Self {
-        Self { act, side: None, begun: false, over: false, implied: false, within_lane: false, step, after_other }
+        Self {
+            act,
+            side: None,
+            begun: false,
+            over: false,
+            implied: false,
+            within_lane: false,
+            hard: false,
+            step,
+            after_other,
+        }
     }
 
     pub(crate) fn goes_aside(&self) -> bool {

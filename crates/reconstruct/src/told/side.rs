@@ -55,6 +55,12 @@ pub(crate) struct Side {
     pub(crate) slowed_early: bool,
     /// It brakes, or swerves, for the turn that the other has begun: late and hard.
     pub(crate) reacts: bool,
+    /// It is told to have braked hard.
+    pub(crate) brakes_hard: bool,
+    /// The same, before it set off last.
+    pub(crate) came_hard: bool,
+    /// How fast it came before it stopped, where that is told and slower than is usual. [m/s]
+    pub(crate) rolled_mps: Option<f64>,
     /// It is told to have gained speed while it drove, and to be under way at the contact.
     pub(crate) gains: bool,
     /// What it did last, ended by what it does at the contact, where that is more than the state says: of the ego.

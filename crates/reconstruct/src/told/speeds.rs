@@ -160,7 +160,7 @@ impl Told {
             (_, true) => 0.0,
             (Some(told), false) => told.max(SLOWEST_MPS),
             (None, false) if self.queues() => fit(QUEUED_MPS),
-            (None, false) if self.cp.runs() => RUNS_MPS,
+            (None, false) if let Some(mps) = fast_mps(&self.cp) => mps,
             (None, false) => as_told(self.cp.manner, fit(usual(&self.cp)), slow, self.posted_mps),
         };
         // Who sets off behind an ego that moves is faster.
@@ -247,13 +247,26 @@ impl Told {
 }
 
 /// Who is told to be slow is no faster than this: in a lot, a garage or a driveway, and elsewhere. [m/s]
-const SLOWLY_MPS: (f64, f64) = (2.0, 2.8);
+pub(crate) const SLOWLY_MPS: (f64, f64) = (2.0, 2.8);
 
 /// Who is told to be fast drives so many times as fast as is posted, or as is usual where nothing is, and faster by so much at most.
 /// [m/s]
 const FAST_SHARE: f64 = 1.4;
 const FASTER_BY_MPS: f64 = 9.0;
 const FAST_MPS: (f64, f64) = (5.0, 11.2);
+
+/// Who rides is no faster where told to be fast. [m/s]
+const RIDES_FAST_MPS: f64 = 8.0;
+
+/// The speed of who has no engine, and is told to be fast. [m/s]
+fn fast_mps(side: &Side) -> Option<f64> {
+    match side.kind {
+        PartnerKind::Pedestrian => Some(RUNS_MPS),
+        PartnerKind::Cyclist | PartnerKind::OtherNonMotorist => Some(RIDES_FAST_MPS),
+        _ => None,
+    }
+    .filter(|_| side.manner == Some(Manner::Fast))
+}
 
 /// A usual speed at the contact, as far as words tell how fast somebody drove.
 fn as_told(manner: Option<Manner>, usual_mps: f64, in_lot: bool, posted_mps: Option<f64>) -> f64 {

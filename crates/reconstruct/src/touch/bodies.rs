@@ -71,7 +71,9 @@ impl<'a> Bodies<'a> {
         let behind_m = 0.5 * (size_of(&told.sv).0 + size_of(&told.cp).0);
         let behind = self.ground.sv_pose((sv_s_m - behind_m).max(0.0)).heading;
         self.sv_at = (sv_s_m, sv);
-        self.headings = headings(told, sv.heading, behind).into_iter();
+        let mut all = headings(told, sv.heading, behind);
+        all.retain(|(came, at)| came == at || !self.ground.is_for_straight(sv_s_m));
+        self.headings = all.into_iter();
         let mut found = Vec::new();
         for beside_m in follows_beside(told) {
             self.trial += 1;

@@ -33,6 +33,7 @@ mod queues;
 mod roads_left;
 mod roadside;
 mod sabotage;
+mod speeds;
 mod stands;
 mod steps;
 mod steps_between;
