@@ -70,6 +70,8 @@ impl Told {
         }
         let lies = thing.and_then(|_| Lies::of(partner, &sv, place));
         cp.size = lies.and_then(Lies::size).or_else(|| things::size(partner, &sv)).or(cp.size);
+        // What "was propelled into the road" by nobody who is told came there.
+        let by_nobody = thing.is_some() && account.others.is_empty() && things::is_pushed_by_nobody(partner);
         let gate_swings = thing.is_some_and(|kind| things::swings(kind, partner, told(&account.striker)));
         if gate_swings {
             // Its post stands.
@@ -158,11 +160,7 @@ impl Told {
             comes_over: origin::comes_over(origin, [&account.sv, partner], movement)
                 || origin::goes_round_another(origin, account, partner),
             order,
-            // What "was propelled into the road" by nobody who is told came there.
-            pushed: partner.did(Act::Pushed)
-                && !cp_reverses
-                && !gate_swings
-                && !(thing.is_some() && account.others.is_empty() && things::is_pushed_by_nobody(partner))
+            pushed: partner.did(Act::Pushed) && !(cp_reverses || gate_swings || by_nobody)
                 || crash_type == CrashType::Secondary
                 || account.others.iter().any(|other| other.touched_partner),
             pusher: others::pusher(account),
