@@ -135,14 +135,19 @@ pub fn restage(brief: &Brief, staging: &Staging) -> Result<String, AgentError> {
 /// # Errors
 /// As [`system`].
 pub fn restaged(staging: &Staging) -> Result<String, AgentError> {
-    let missed: Vec<String> = staging.missed.iter().map(fact).collect();
+    let missed: Vec<String> = staging.missed.iter().map(missed_fact).collect();
     render("restaged.md", context! { missed, replay => capped(staging.replay.trim_end(), MAX_REPLAY) })
 }
 
 /// Why a model that is content must not be.
 pub fn missed(checks: &[Check]) -> String {
-    let told: Vec<String> = checks.iter().map(fact).collect();
+    let told: Vec<String> = checks.iter().map(missed_fact).collect();
     format!("as_told is true, and told facts are missed: {}", told.join("; "))
+}
+
+/// A told fact that is missed, and what the run shows instead.
+fn missed_fact(check: &Check) -> String {
+    format!("{}: {}; shown is {}", check.kind.label(), check.expected, check.observed)
 }
 
 /// A told fact, and what the run shows of it.
@@ -150,8 +155,10 @@ fn fact(check: &Check) -> String {
     let (kind, told, seen) = (check.kind.label(), &check.expected, &check.observed);
     match check.result {
         CheckResult::Shown => format!("{kind}: {told} (shown)"),
-        CheckResult::NotShown => format!("{kind}: {told}; shown is {seen}"),
-        CheckResult::CannotBeShown | CheckResult::NotTold => format!("{kind}: {told} (not checked in this run)"),
+        CheckResult::NotShown => missed_fact(check),
+        CheckResult::CannotBeShown | CheckResult::NotTold => {
+            format!("{kind}: {told} (not checked in this run: {seen}; it need not be shown)")
+        }
     }
 }
 

@@ -141,7 +141,7 @@ impl LanguageModel<'_> {
             match step {
                 Err(problems) if !granted => return Err(self.no_usable_answer(&problems)),
                 Ok(_) if !granted => {
-                    let why = format!("it is not content after {} changes", self.max_repairs);
+                    let why = format!("it is not content after {} changes", now.changed.len() + 1);
                     return Err(self.no_usable_answer(&[why]));
                 }
                 Err(problems) => push_repair(&mut question, exchange.answer, &problems)?,

@@ -24,6 +24,8 @@ pub(super) fn taken(answer: Review) -> Result<Review, Vec<String>> {
 
 /// A note as it is kept.
 pub(super) fn in_one_line(note: &str) -> String {
-    let words = note.split(|c: char| c.is_whitespace() || c.is_control()).filter(|word| !word.is_empty());
+    // Marks that turn the direction of text would turn what stands behind the note.
+    let turns = |c: char| matches!(c, '\u{200b}'..='\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+    let words = note.split(|c: char| c.is_whitespace() || c.is_control() || turns(c)).filter(|word| !word.is_empty());
     words.collect::<Vec<_>>().join(" ").chars().take(LONGEST_NOTE).collect()
 }

@@ -122,10 +122,12 @@ fn restagings(summary: &Summary) {
     let stay = if not_content == 0 {
         String::new()
     } else {
-        format!("; {not_content} stay as staged, though it was not content: no change of them was taken")
+        format!(
+            "; {not_content} stay as the rules staged them, since nothing usable came of its answers (summary.json says why)"
+        )
     };
     sentence(&format!(
-        "{model} looks at {looked_at} replays of what the rules staged: {as_staged} are as told, {changed} it changed{stay}"
+        "{model} was asked about {looked_at} replays of what the rules staged: {as_staged} are as told, {changed} it changed{stay}"
     ));
 }
 

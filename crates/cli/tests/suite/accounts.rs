@@ -175,9 +175,9 @@ fn new_records_say_what_they_bring_and_leave_the_rest() {
 }
 
 #[test]
-fn a_model_reads_there_and_does_nothing_else() {
+fn a_model_tunes_nothing_there() {
     let place = Place::new();
-    let (code, _, remarks) = place.run(&["run", "--profile", "open", "--agent", "gpt-5-mini"]);
+    let (code, _, remarks) = place.run(&["run", "--profile", "open", "--tune", "gpt-5-mini"]);
     assert!(code != 0 && remarks.contains("choose the profile paper"), "{code} {remarks}");
 }
 

@@ -74,7 +74,8 @@ fn a_change_that_keeps_all_told_facts_is_taken_and_one_that_loses_them_is_not() 
         text.contains("scripted looks at 4 of 4 replays, and changes what they do not show as told: about "),
         "{text}"
     );
-    let told = "scripted looks at 4 replays of what the rules staged: 2 are as told, 1 it changed; 1 stay as staged";
+    let told =
+        "scripted was asked about 4 replays of what the rules staged: 2 are as told, 1 it changed; 1 stay as the rules";
     assert!(text.contains(told), "{text}");
 
     let now = cases(&out);

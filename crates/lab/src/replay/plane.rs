@@ -1,6 +1,6 @@
 //! Where everybody is in the coordinates of the scenario, for who changes it.
 
-use super::{degrees, first_contact_step, is_touch};
+use super::{degrees, first_contact_step};
 use recrash_model::rollout::{ActorTrack, Role, Rollout, STEP_S};
 
 /// Steps between two lines.
@@ -26,7 +26,7 @@ pub fn in_the_plane(rollout: &Rollout) -> String {
     };
     let mut lines = vec!["Centres in the plane (x m, y m, heading deg):".to_owned()];
     lines.extend((0..=contact).filter(|step| *step == contact || step.is_multiple_of(LINE_STEPS)).map(line));
-    if !rollout.events.iter().any(is_touch) {
+    if rollout.first_contact_of(0).is_none() {
         lines.extend(users[1..].iter().filter_map(|other| nearest(users[0], other)));
     }
     lines.join("\n") + "\n"

@@ -9,12 +9,13 @@ use crate::progress::ProgressEvent;
 use crate::suite::{Stage, Suite, Work, names};
 use recrash_agents::llm::{Question, Repairs, Staging, restage_question};
 use recrash_lab::replay;
+use recrash_model::Diagnostic;
 use recrash_model::account::Account;
 use recrash_model::metrics::{Check, CheckResult};
 use recrash_model::rollout::{ActorState, Rollout, STEP_S};
-use recrash_model::scenario::{EgoSpec, ScenarioDraft};
+use recrash_model::scenario::{EgoSpec, ScenarioDraft, Source};
 use recrash_model::selection::Cluster;
-use recrash_reconstruct::{Reconstruction, held_against};
+use recrash_reconstruct::{Reconstruction, held_against, reconstruct};
 use recrash_roads::Simulator;
 use recrash_sim::{Ego, Native};
 use std::cell::RefCell;
@@ -61,6 +62,8 @@ pub(super) fn restaged(
     let made = models.model(name, &suite.options().cast, &repairs).restage(&brief, given.clone(), stage);
     let mut log = DesignLog { asked: name.to_owned(), repairs: repairs.all(), attempts: attempts.into_inner(), ..log };
     let taken = match made {
+        // All of it may have been taken back.
+        Ok(staging) if same_scene(&staging.draft, &draft) => draft,
         Ok(staging) => {
             log.changed = staging.changed;
             staging.draft
@@ -72,6 +75,12 @@ pub(super) fn restaged(
     };
     log.taken = log.attempts.iter().rposition(|attempt| attempt.draft == taken).unwrap_or(0);
     Ok((taken, log))
+}
+
+/// Whether two scenarios are the same but for who wrote them.
+fn same_scene(one: &ScenarioDraft, other: &ScenarioDraft) -> bool {
+    let author = other.source.author.clone();
+    ScenarioDraft { source: Source { author, ..one.source.clone() }, ..one.clone() } == *other
 }
 
 /// The first question about what the rules staged of a case.
@@ -86,8 +95,12 @@ pub(crate) fn question(
 ) -> Result<Question, PipelineError> {
     let (id, records) = (&cluster.scenario_id, cases.records_of(cluster));
     let account: Account = suite.store().read_json(&names::account(id))?;
-    let log: DesignLog = suite.store().read_json(&names::design_log(id))?;
-    let draft = log.attempts.into_iter().next().map(|first| first.draft).ok_or_else(|| suite.stale(Stage::Design))?;
+    let log: Option<DesignLog> = suite.store().read_json(&names::design_log(id)).ok();
+    // Where the design waits for answers the rules stage it for the purpose.
+    let draft = match log.and_then(|log| log.attempts.into_iter().next()) {
+        Some(first) => first.draft,
+        None => reconstruct(&account).map_err(|why| PipelineError::scenario(id, why.label()))?.draft,
+    };
     let (given, _) = rehearse(&account, draft, &[]).map_err(|why| PipelineError::scenario(id, why.join("; ")))?;
     let brief = cases.brief(suite, cluster, &records, Some(&account));
     restage_question(model, &brief, &given).map_err(|e| PipelineError::bad_input(e.to_string()))
@@ -98,9 +111,12 @@ pub(crate) fn question(
 /// # Errors
 /// It cannot be run.
 fn rehearse(account: &Account, draft: ScenarioDraft, shown: &[Check]) -> Result<(Staging, Rollout), Vec<String>> {
-    let scenario = recrash_roads::check(draft)
-        .map_err(|why| why.iter().filter(|told| told.is_error()).map(ToString::to_string).collect::<Vec<_>>())?
-        .value;
+    // As the stages behind this one read it from its file.
+    let errors = |why: Vec<Diagnostic>| -> Vec<String> {
+        why.iter().filter(|told| told.is_error()).map(ToString::to_string).collect()
+    };
+    let read = recrash_roads::read_draft(&recrash_roads::write_draft(&draft)).map_err(errors)?.value;
+    let scenario = recrash_roads::check(read).map_err(errors)?.value;
     let rollout = Native::new(Ego::Recorded).run(&scenario).map_err(|why| vec![why.to_string()])?;
     let verdict = held_against(account, &scenario, &rollout).map_err(|why| vec![why.label().to_owned()])?;
     let replay = replay::in_words(scenario.draft(), &rollout) + &replay::in_the_plane(&rollout);
@@ -112,7 +128,18 @@ fn rehearse(account: &Account, draft: ScenarioDraft, shown: &[Check]) -> Result<
             || left_open == Some(check)
             || check.result != CheckResult::Shown && lost()
     };
-    let missed = made.verdict.checks.iter().filter(is_missed).cloned().collect();
+    let mut missed: Vec<Check> = made.verdict.checks.iter().filter(is_missed).cloned().collect();
+    // Of what has no check any more nothing is to be seen.
+    let is_gone = |other: &&Check| {
+        let same = |check: &Check| check.kind == other.kind && check.expected == other.expected;
+        !made.verdict.checks.iter().any(same)
+    };
+    let gone = shown.iter().filter(is_gone).cloned();
+    missed.extend(gone.map(|check| Check {
+        observed: "nothing of it".to_owned(),
+        result: CheckResult::CannotBeShown,
+        ..check
+    }));
     let Reconstruction { draft, rollout, verdict, .. } = made;
     Ok((Staging { draft, replay, checks: verdict.checks, missed, changed: Vec::new() }, rollout))
 }
@@ -120,6 +147,7 @@ fn rehearse(account: &Account, draft: ScenarioDraft, shown: &[Check]) -> Result<
 /// Has the system under test take over some time before the contact, and before the ego began to stop; as in what the rules staged, where
 /// neither the ego nor the time of its contact is another.
 fn hand_over(ego: &mut EgoSpec, rollout: &Rollout, (of_rules, before): (&EgoSpec, &Rollout)) {
+    (ego.handover_s, ego.target_speed_mps) = (of_rules.handover_s, of_rules.target_speed_mps);
     let contact = |rollout: &Rollout| rollout.first_contact_of(0).map(|(time_s, _)| time_s);
     let Some(contact_s) = contact(rollout) else { return };
     if ego.recorded == of_rules.recorded && contact(before) == Some(contact_s) {
@@ -150,14 +178,16 @@ pub(super) fn tell_cost(work: &StageWork, declared: &CaseStage, cases: &Cases) -
     let is_open = |cluster: &&Cluster| -> Result<bool, PipelineError> {
         let id = &cluster.scenario_id;
         let (unit, inputs) = (unit_name(Stage::Design, id), case_inputs(suite, declared, cases, cluster)?);
-        Ok(suite.must_be_current(Stage::Design, &Work { name: &unit, inputs: &inputs, editable: &[] }).is_err())
+        let unit = Work { name: &unit, inputs: &inputs, editable: &(declared.editable)(id) };
+        Ok(suite.must_be_current(Stage::Design, &unit).is_err())
     };
     let open: Vec<bool> = clusters.iter().map(is_open).collect::<Result<_, _>>()?;
     let count = open.into_iter().filter(|open| *open).count();
     if count > 0 {
         let cost = models.estimate(name, count * QUESTION_BYTES, count);
         let what = format!(
-            "{name} looks at {count} of {} replays, and changes what they do not show as told: {cost}, and as much again for each change",
+            "{name} looks at {count} of {} replays, and changes what they do not show as told: {cost}, and more for each change, as all \
+             that was said before is sent again",
             clusters.len()
         );
         work.progress.event(ProgressEvent::Said { what: &what });

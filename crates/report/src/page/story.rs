@@ -60,7 +60,7 @@ fn reviewed(by: &ReviewBy) -> Markup {
 /// What a language model changed in what the rules staged.
 fn restaged(changed: &Changed) -> Markup {
     html! {
-        p.review { "Staged by the rules, and changed by " b { (words::clean(&changed.model, 80)) } ": " span dir="auto" { (words::clean(&changed.what, 4 * LONGEST_NOTE)) } }
+        p.review { "Staged by the rules, and changed by " b { (words::clean(&changed.model, 80)) } ": " span dir="auto" { (words::clean(&changed.what, LONGEST_TEXT)) } }
     }
 }
 
