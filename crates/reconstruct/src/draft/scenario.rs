@@ -10,9 +10,10 @@ use crate::pace::plain::{first_time, when};
 use crate::partner::plan::partner;
 use crate::told::crash::Told;
 use crate::told::others::Role;
+use crate::told::side::Turning;
 use crate::touch::opening::Opening;
 use crate::touch::staging::Staging;
-use recrash_model::account::{Account, ContactState, Origin, PlaceKind, StandReason, told as told_of};
+use recrash_model::account::{Account, ContactState, LeftRight, Origin, PlaceKind, StandReason, told as told_of};
 use recrash_model::narrative::Side;
 use recrash_model::scenario::{
     ActorPlan, Author, Deed, Driveway, EgoSpec, Environment, MapSpec, MissionStop, Part, Place, SCENARIO_FORMAT,
@@ -149,21 +150,25 @@ fn mission_stop(told: &Told, staging: &Staging) -> Vec<MissionStop> {
 /// Width of a driveway, and how far it reaches behind the kerb. [m]
 const DRIVEWAY_M: (f64, f64) = (7.0, 9.0);
 
-/// None reaches farther: no map has one that does. [m]
-const DEEPEST_M: f64 = 40.0;
+/// None reaches farther: who begins behind its end has not come out of it. [m]
+const DEEPEST_M: f64 = 20.0;
 
 /// The driveway where a partner begins that comes out of one, beside the road that the ego is on.
 fn driveway(told: &Told, ground: &Ground, begins: &Place) -> Option<Driveway> {
-    let Place::Plane { x_m, y_m, .. } = *begins else { return None };
-    let there = matches!(told.origin, Origin::Driveway { .. }) && told.place != PlaceKind::Highway;
+    let (Place::Plane { x_m, y_m, .. }, Origin::Driveway { side }) = (begins, told.origin) else { return None };
+    // Of an ego that turns it is beside the road to which that turns.
+    let turns = matches!(told.sv.turning, Turning::Left | Turning::Right);
+    let from_own_m = y_m - ground.sv_pose(0.0).position.y;
+    let of_ego = if from_own_m > 0.0 { LeftRight::Left } else { LeftRight::Right };
     // The line of a road before a junction begins at that, and leads away from it.
     let (left, s_m) = match ground.junction {
-        true => (y_m < 0.0, -x_m - corner_m(ground.lanes)),
-        false => (y_m > 0.0, x_m + ground.begins_m()),
+        true => (of_ego == LeftRight::Right, -x_m - corner_m(ground.lanes)),
+        false => (of_ego == LeftRight::Left, x_m + ground.begins_m()),
     };
+    let there = !turns && told.place != PlaceKind::Highway && side.is_none_or(|side| side == of_ego);
     let (side, there) = (if left { Side::Left } else { Side::Right }, there && s_m > 0.5 * DRIVEWAY_M.0);
     // Who rolls out of it begins deep in it.
-    let begins_m = y_m.abs() - ground.lane_edges_m[usize::from(y_m < 0.0)];
+    let begins_m = from_own_m.abs() - ground.lane_edges_m[usize::from(from_own_m < 0.0)];
     let depth_m = if told.rolls_out() { begins_m.clamp(DRIVEWAY_M.1, DEEPEST_M) } else { DRIVEWAY_M.1 };
     there.then_some(Driveway { side, s_m, width_m: DRIVEWAY_M.0, depth_m })
 }

@@ -120,6 +120,11 @@ fn lane_at(
 /// Whether a driving lane is the told one; of its number and the last one's, 0 is the leftmost.
 fn is_told(told: &Told, word: LaneWord, of_ego: bool, (number, last): (usize, usize)) -> bool {
     let turn_lanes = if told.turns_abreast() { 2 } else { 1 };
+    // A count tells more than the word for the lane.
+    let driving = matches!(word, LaneWord::Left | LaneWord::Center | LaneWord::Right);
+    if let Some(counted) = told.counted(of_ego).filter(|_| driving) {
+        return counted.place(last + 1) == Some(number);
+    }
     match word {
         LaneWord::Left if of_ego && told.layout.turn_lane => number == 1,
         LaneWord::Left => number == 0,
@@ -127,10 +132,7 @@ fn is_told(told: &Told, word: LaneWord, of_ego: bool, (number, last): (usize, us
         LaneWord::Right => number == last,
         LaneWord::LeftTurn => number < turn_lanes,
         LaneWord::RightTurn => number + turn_lanes > last,
-        LaneWord::Center => match told.counted(of_ego) {
-            Some(counted) => counted.place(last + 1) == Some(number),
-            None => number > 0 && number < last,
-        },
+        LaneWord::Center => number > 0 && number < last,
         _ => false,
     }
 }

@@ -48,7 +48,11 @@ pub(crate) fn ground_for(told: &Told) -> Ground {
     let one_way = is_one_way(told);
     let one_sided = one_way || told.keeps_one_way() || told.edge == Some(LeftRight::Left) && !told.edge_is_median();
     let oncoming = if one_sided || told.place == PlaceKind::Highway && !told.is_met_on_highway() { 0 } else { 1 };
-    let lane_m = if told.layout.narrow && told.edge.is_none() { NARROW_LANE_M } else { LANE_M };
+    let lane_m = if told.layout.narrow && told.edge.is_none() && told.place != PlaceKind::Highway {
+        NARROW_LANE_M
+    } else {
+        LANE_M
+    };
     let (right, left) = match told.place {
         _ if let Some(side) = told.edge => beside_edge(told, side, lot, oncoming),
         PlaceKind::Highway => {

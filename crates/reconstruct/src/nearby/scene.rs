@@ -97,7 +97,8 @@ impl<'a> Scene<'a> {
         // Beside it only where lanes lead its way.
         let [_, right_m] = self.ground.lane_edges_m;
         let left_m = self.ground.opposing_m - 0.5 * self.ground.lane_m;
-        let beside = [-LANE_M, LANE_M].into_iter().filter(|t_m| *t_m < right_m && -*t_m < left_m);
+        let lane_m = self.ground.lane_m;
+        let beside = [-lane_m, lane_m].into_iter().filter(|t_m| *t_m < right_m && -*t_m < left_m);
         to_m.into_iter().chain([from_m]).chain(beside).collect()
     }
 
@@ -108,8 +109,9 @@ impl<'a> Scene<'a> {
     }
 
     pub(super) fn beside_m(&self, side: LeftRight, step: usize) -> f64 {
-        let lane_m = (self.at(step).1 / LANE_M).round() * LANE_M;
-        lane_m + if side == LeftRight::Left { -LANE_M } else { LANE_M }
+        let wide_m = self.ground.lane_m;
+        let lane_m = (self.at(step).1 / wide_m).round() * wide_m;
+        lane_m + if side == LeftRight::Left { -wide_m } else { wide_m }
     }
 
     /// Where the crossing road's lanes from one side, and to it, are: a pose on the line where the junction begins, facing into it.

@@ -162,9 +162,13 @@ impl Told {
     }
 
     /// An ego that stands ahead of one that is parked, which another pushes into it, stood there when the story begins: no way leads there past that.
-    pub(super) fn stands_before_parked(&mut self) {
+    /// Not one that is told to have come to a stop there, or to have moved.
+    pub(super) fn stands_before_parked(&mut self, sv: &Party) {
         let parked = self.cp.state == ContactState::Parked && self.cp.state_told && self.is_thrown();
-        if parked && self.sv.state == ContactState::Stopped && !self.sv.phases.contains(&Phase::Drives) {
+        let still =
+            sv.acts.iter().filter(|fact| !fact.after_contact).all(|fact| matches!(fact.act, Act::Hold | Act::Park));
+        let only_stood = still && told(&sv.standing) != Some(Standing::CameToStop);
+        if parked && only_stood && self.sv.state == ContactState::Stopped && !self.sv.phases.contains(&Phase::Drives) {
             self.sv.state = ContactState::Parked;
             self.sv.acts.clear();
             self.sv.phases.clear();
@@ -265,7 +269,23 @@ impl Told {
             vehicle && still && !other.several && matches!(place, None | Some(Origin::Ahead | Origin::Beside { .. }))
         };
         let ego_side = account.others.iter().filter(stands).count() == 1;
-        if pass.is_some() && drives && to_left && met && ego_side && self.thing.is_none() {
+        // It is told to leave its line; or to go round somebody who is in that, not at the kerb.
+        let at_kerb = |other: &Other| {
+            let words =
+                before_contact(other).map(|fact| &fact.source).chain(other.place.iter().map(|fact| &fact.source));
+            words.map(text).any(|words| {
+                ["curb", "kerb"].iter().any(|kerb| words.contains(kerb))
+                    || words.contains("parked") && !words.contains("double")
+            })
+        };
+        let aside = |fact: &ActFact| {
+            !fact.after_contact && matches!(fact.act, Act::Drift | Act::Swerve | Act::LaneChange | Act::Enter)
+        };
+        let over = account.sv.acts.iter().any(aside) || account.sv.astride.is_some();
+        let round = pass.is_some_and(|fact| text(&fact.source).contains("around"))
+            && !account.others.iter().filter(stands).any(at_kerb);
+        let leaves = over || round || self.sv.aside.is_some() || self.sv.movement == Some(Movement::LaneDeparture);
+        if pass.is_some() && leaves && drives && to_left && met && ego_side && self.thing.is_none() {
             self.sv.movement = Some(Movement::Passing);
             (self.sv.aside, self.sv.goes_round) = (Some(LeftRight::Left), true);
         }

@@ -69,7 +69,7 @@ impl Told {
             cp.acts.retain(|doing| !doing.is_begun_pass());
         }
         let lies = thing.and_then(|_| Lies::of(partner, &sv, place));
-        cp.size = lies.and_then(Lies::size).or_else(|| things::size(partner, &sv)).or(cp.size);
+        cp.size = lies.and_then(Lies::size).or_else(|| things::size(partner)).or(cp.size);
         // What "was propelled into the road" by nobody who is told came there.
         let by_nobody = thing.is_some() && account.others.is_empty() && things::is_pushed_by_nobody(partner);
         let gate_swings = thing.is_some_and(|kind| things::swings(kind, partner, told(&account.striker)));
@@ -103,7 +103,7 @@ impl Told {
         };
         let edge = Some(origin).filter(|_| !gate_swings && account.door.is_none());
         let edge = edge.and_then(|origin| edge::side(account, &sv, &cp, lies, origin));
-        if edge.is_some() && things::size(partner, &sv).is_none() {
+        if edge.is_some() && things::size(partner).is_none() {
             cp.size = edge::size(kind).or(cp.size);
         }
         let dropped = things::dropped_by(account, partner, &sv).filter(|_| edge.is_none() && lies.is_none());
@@ -111,7 +111,8 @@ impl Told {
             cp.state = ContactState::Moving;
             assumed.retain(|assumed| !assumed.starts_with("the partner is "));
         }
-        let reaches_in = things::reaches_in(partner, &sv).filter(|_| edge.is_none() && cp.state.stands());
+        let reaches_in = things::reaches_in(partner, account, &sv).filter(|_| edge.is_none() && cp.state.stands());
+        cp.size = reaches_in.map(|_| things::REACHES_IN).or(cp.size);
         let diagonal = edge::is_diagonal(partner, &cp);
         cp.backs_in = origin::backs_in(partner, cp.state, origin, place);
         let striker = told(&account.striker);
@@ -151,7 +152,7 @@ impl Told {
             edge,
             diagonal,
             lane_changed: things::changed_lanes_before(account),
-            walks_across: origin::walks_across(origin, partner, sv_reverses),
+            walks_across: origin::walks_across(origin, account, partner, sv_reverses),
             origin,
             origin_told,
             heading_told: partner.heading.is_some(),
@@ -206,7 +207,7 @@ impl Told {
             choices: Choices::default(),
             assumed,
         };
-        this.stands_before_parked();
+        this.stands_before_parked(&account.sv);
         this.queued = this.was_in_queue(account, partner);
         this.back_straight = this.cp_drives_over();
         this.courses(account, partner);

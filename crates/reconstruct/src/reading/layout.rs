@@ -9,18 +9,30 @@ use recrash_model::account::{
 };
 use recrash_model::template::Movement;
 
+/// The number of the outermost lane, which is told as the left or the right one.
+const FIRST: [&str; 2] = ["1", "one"];
+
 impl Counted {
     fn of(text: &str) -> Option<Self> {
-        let words: Vec<&str> = text.split(|letter: char| !letter.is_alphanumeric()).collect();
+        let text = text.replace('#', " number ");
+        let words: Vec<&str> =
+            text.split(|letter: char| !letter.is_alphanumeric()).filter(|word| !word.is_empty()).collect();
         let has = |word: &str| words.iter().any(|other| other.eq_ignore_ascii_case(word));
         let counts = [
             (2, ["second", "2nd", "two", "2"]),
             (3, ["third", "3rd", "three", "3"]),
             (4, ["fourth", "4th", "four", "4"]),
         ];
-        // "The number two lane", "the #2 lane", "lane 2".
-        let numbered = text.contains('#') || has("number") || words.first() == Some(&"lane");
-        let names = |names: &[&str; 4]| names[..if numbered { 4 } else { 2 }].iter().any(|name| has(name));
+        // "The number two lane", "the #2 lane", "lane 2"; in "lane 1 of 2" the 1 counts, which is the outermost.
+        let is_number = |word: &str| FIRST.contains(&word) || counts.iter().any(|(_, all)| all[2..].contains(&word));
+        let leads = |at: usize, word: &str| word.eq_ignore_ascii_case("number") || at == 0 && word == "lane";
+        let pairs = words.windows(2).enumerate();
+        let numbered = pairs.filter(|(at, pair)| leads(*at, pair[0])).map(|(_, pair)| pair[1]);
+        let numbered = numbered.map(str::to_lowercase).find(|word| is_number(word));
+        let names = |names: &[&str; 4]| match &numbered {
+            Some(number) => names[2..].contains(&number.as_str()),
+            None => names[..2].iter().any(|name| has(name)),
+        };
         let (number, _) = counts.into_iter().find(|(_, all)| names(all))?;
         // From the left, where no side is told.
         let from = match (has("left") || has("leftmost"), has("right") || has("rightmost")) {
@@ -89,8 +101,18 @@ fn ways_off_street(account: &Account, partner: &Party, of_partner: bool) -> Opti
         let at = span(&feature.source)?;
         let is_partners = within(&partners, at);
         let here = if of_partner { is_partners } else { !is_partners && !within(&others, at) };
-        turns_off_street(feature).filter(|_| here)
+        turns_off_street(feature)
+            .filter(|way| here && (of_partner || *way == OffStreet::Into || !drives_on_after(&account.sv, at)))
     })
+}
+
+/// Whether somebody drives on after a turn whose words stand here: it has left that road.
+fn drives_on_after(party: &Party, at: (usize, usize)) -> bool {
+    let before = || party.acts.iter().filter(|fact| !fact.after_contact && !fact.begun);
+    let this = |fact: &&ActFact| span(&fact.source).is_some_and(|span| span.0 < at.1 && at.0 < span.1);
+    let turn = before().filter(|fact| fact.act == Act::Turn).find(this);
+    let stands = |act: Act| matches!(act, Act::Slow | Act::Stop | Act::Hold | Act::Park);
+    turn.is_some_and(|turn| before().any(|fact| fact.step > turn.step && !stands(fact.act)))
 }
 
 /// Where the words for somebody's turns stand.
@@ -158,7 +180,12 @@ fn is_told_on(account: &Account, partner: &Party, words: &[&str]) -> bool {
     let acts = partner.acts.iter().filter(|fact| !fact.after_contact).map(|fact| &fact.source);
     let from = account.came_from.iter().map(|fact| &fact.source);
     let lane = partner.lane.iter().map(|fact| &fact.source);
-    acts.chain(from).chain(lane).map(text).any(|text| words.iter().any(|word| text.contains(word)))
+    acts.chain(from).chain(lane).map(text).any(|text| words.iter().any(|word| begins_word(&text, word)))
+}
+
+/// Whether a word of the text begins so: "alleys" does with "alley", "Valley" does not.
+fn begins_word(text: &str, word: &str) -> bool {
+    text.match_indices(word).any(|(at, _)| !text[..at].ends_with(char::is_alphanumeric))
 }
 
 /// Words for who is behind the ego in its lane.
@@ -399,6 +426,9 @@ mod tests {
         let third = Counted::of("lane 3").unwrap();
         assert_eq!((third.place(4), third.place(2)), (Some(2), None));
         assert_eq!(Counted::of("number two lane").unwrap().place(3), Some(1));
+        assert_eq!(Counted::of("#2 lane").unwrap().place(3), Some(1));
+        assert_eq!(Counted::of("lane 1 of 2"), None);
+        assert_eq!(Counted::of("lane 2 of 3").unwrap().place(3), Some(1));
         assert_eq!(Counted::of("the right lane"), None);
         assert_eq!(Counted::of("the left of two lanes"), None);
     }

@@ -155,7 +155,8 @@ pub(super) fn assumed_origin(crash_type: CrashType, sv: &Side, cp: &Side) -> Opt
 }
 
 /// Whether it is told of somebody on foot, or of an animal, that it went into the ego's way or across; who walks behind an ego that backs does.
-pub(super) fn walks_across(origin: Origin, partner: &Party, sv_backs: bool) -> bool {
+/// Not who comes along behind it, towards it.
+pub(super) fn walks_across(origin: Origin, account: &Account, partner: &Party, sv_backs: bool) -> bool {
     // Who stood beside the ego's way, and then stepped out, came from there.
     let stood = steps(partner, |act| matches!(act, Act::Hold | Act::Stop)).into_iter().max();
     let steps_out = steps(partner, |act| matches!(act, Act::Cross | Act::Enter)).into_iter().max();
@@ -165,6 +166,12 @@ pub(super) fn walks_across(origin: Origin, partner: &Party, sv_backs: bool) -> b
     let on_foot = told(&partner.kind).and_then(Kind::partner_kind).is_some_and(is_on_foot);
     let crosses = told(&partner.movement) == Some(Movement::NmCrossing);
     let enters = [Act::Cross, Act::Enter, Act::PullOut].into_iter().any(|act| partner.did(act));
-    let walks = origin == Origin::Behind && sv_backs && !partner.did(Act::Hold) && !partner.did(Act::Stop);
+    let comes_along = account
+        .came_from
+        .as_ref()
+        .map(|fact| text(&fact.source))
+        .is_some_and(|words| ["toward", "from behind"].iter().any(|word| words.contains(word)) && !enters);
+    let stands = partner.did(Act::Hold) || partner.did(Act::Stop);
+    let walks = origin == Origin::Behind && sv_backs && !stands && !comes_along;
     (along && (crosses || enters) || walks) && on_foot
 }

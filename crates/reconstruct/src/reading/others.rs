@@ -231,11 +231,13 @@ fn number_of(other: &Other) -> usize {
     const MANY: [&str; 8] = ["several", "group", "crowd", "class", "many", "multiple", "handful", "numerous"];
     let words = text(&other.kind.source);
     let of = |word: &str| match word {
+        "two" | "couple" | "pair" => Some(2),
         "three" => Some(3),
         "four" | "five" | "six" | "seven" | "eight" | "nine" | "ten" | "dozen" | "fifteen" | "twenty" => Some(4),
         word => MANY.contains(&word).then_some(3),
     };
-    words.split(|letter: char| !letter.is_alphanumeric()).find_map(of).unwrap_or(2)
+    // "Four-door" counts nobody.
+    words.split(|letter: char| !letter.is_alphanumeric() && letter != '-').find_map(of).unwrap_or(2)
 }
 
 /// Whether somebody is told to run before the contact.

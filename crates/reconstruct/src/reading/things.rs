@@ -67,11 +67,11 @@ const SIZES_M: [(&str, f64, f64); 22] = [
 ];
 
 /// Words for what stands else, and lies.
-const DOWN: [&str; 9] = ["fallen", "fell", "broken", "knocked", "downed", "lying", "laying", "lay", "laid"];
+const DOWN: [&str; 8] = ["fallen", "fell", "knocked", "downed", "lying", "laying", "lay", "laid"];
 
-/// What stands else lies across the lane; a branch that is not told to lie reaches into it from beside the road: along it, and across. [m]
+/// What stands else lies across the lane; a branch that is told to hang reaches into it from beside the road: along it, and across. [m]
 const LIES_ACROSS: Size = Size { length_m: 0.5, width_m: 2.0 };
-const REACHES_IN: Size = Size { length_m: 1.0, width_m: 2.4 };
+pub(super) const REACHES_IN: Size = Size { length_m: 1.0, width_m: 2.4 };
 
 /// Whether it is told of what stands or hangs else that it lies: "a fallen sign", "a pole was lying across the lane".
 pub(super) fn lies_down(thing: &Party) -> bool {
@@ -80,20 +80,26 @@ pub(super) fn lies_down(thing: &Party) -> bool {
     said.any(|words| words.split(|letter: char| !letter.is_alphanumeric()).any(|word| DOWN.contains(&word)))
 }
 
-/// Whether the partner is a branch or the like that hangs or grows into the lane, on the side that is touched.
-pub(super) fn reaches_in(thing: &Party, sv: &Side) -> Option<LeftRight> {
-    let side = side_of(&sv.zones).filter(|_| told(&thing.kind) == Some(Kind::TreeBranch) && !lies_down(thing))?;
+/// How words begin for what reaches into the lane from beside it, or above.
+const HANGS: [&str; 9] = ["hang", "hung", "dangl", "overhang", "overhung", "overgrown", "protrud", "extend", "reach"];
+
+/// Whether the partner is a branch or the like that is told to hang or reach into the lane, on the side that is touched.
+pub(super) fn reaches_in(thing: &Party, account: &Account, sv: &Side) -> Option<LeftRight> {
+    let acts = thing.acts.iter().filter(|fact| !fact.after_contact).map(|fact| &fact.source);
+    let touched = account.sv.zones.iter().map(|fact| &fact.source);
+    let mut said = thing.kind.iter().map(|fact| &fact.source).chain(acts).chain(touched).map(text);
+    let hangs = |word: &str| word == "low" || HANGS.iter().any(|stem| word.starts_with(stem));
+    let hangs = said.any(|words| words.split(|letter: char| !letter.is_alphanumeric()).any(hangs));
+    let branch = hangs && told(&thing.kind) == Some(Kind::TreeBranch) && !lies_down(thing);
+    let side = side_of(&sv.zones).filter(|_| branch)?;
     Some(if side > 0.0 { LeftRight::Left } else { LeftRight::Right })
 }
 
 /// The size of a small thing, where the words for it tell more than its kind.
-pub(super) fn size(thing: &Party, sv: &Side) -> Option<Size> {
+pub(super) fn size(thing: &Party) -> Option<Size> {
     let kind = told(&thing.kind)?;
     if matches!(kind, Kind::Sign | Kind::Pole) && lies_down(thing) {
         return Some(LIES_ACROSS);
-    }
-    if reaches_in(thing, sv).is_some() {
-        return Some(REACHES_IN);
     }
     let small = matches!(kind, Kind::Debris | Kind::Object | Kind::Scooter | Kind::Cargo | Kind::Wall | Kind::Pole);
     let text = words_of(&thing.kind).filter(|_| small)?;
@@ -213,12 +219,15 @@ pub(super) const POST: Size = Size { length_m: 0.3, width_m: 0.3 };
 /// Who is named no farther behind the words that a thing came from somewhere is where it came from. [byte]
 const FROM_WITHIN: usize = 16;
 
-/// Whether words tell that a thing came off somebody: "slid off", "came loose". What had fallen before, or had been blown over, lies there; and a
+/// Words for what lay in the way, or stood there and went over.
+const LAY_THERE: [&str; 9] = ["fallen", "blown", "lying", "laying", "tip", "toppl", "knock", "fell over", "fall over"];
+
+/// Whether words tell that a thing came off somebody: "slid off", "came loose". What had fallen before, or tipped over, lies there; and a
 /// branch breaks off a tree.
 fn falls(kind: Kind, text: &str) -> bool {
     match kind {
         Kind::TreeBranch => ["fell", "came off", "from under"].iter().any(|word| text.contains(word)),
-        _ => !["fallen", "blown", "lying", "laying"].iter().any(|word| text.contains(word)),
+        _ => !LAY_THERE.iter().any(|word| text.contains(word)),
     }
 }
 

@@ -88,9 +88,9 @@ impl Told {
             Movement::ParkingManeuver => (0.0, by(right, KERB_M)),
             // It changed lanes on its way.
             Movement::Straight if self.sv.changed_lanes && self.sv.aside.is_some() => (0.0, by(left, LANE_M)),
-            // It dodged, or drifted, while it drove on.
             // Beside who stands at the edge of its lane.
             Movement::Passing if self.rounds_other() => (0.0, -ROUNDS_M),
+            // It dodged, or drifted, while it drove on.
             Movement::Straight | Movement::Passing if self.sv.aside.is_some() => (0.0, by(left, self.sv_departs_m())),
             _ => return None,
         };

@@ -24,6 +24,7 @@ mod left_behind;
 mod moves;
 mod near;
 mod near_deeds;
+mod no_more;
 mod others;
 mod own_trailer;
 mod own_way;
