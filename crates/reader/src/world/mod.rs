@@ -283,6 +283,10 @@ impl World {
         if tower == towed || towed == SUBJECT || self.actors[tower].towed_by.is_some() {
             return;
         }
+        // "struck a parked trailer, dragging it".
+        if tower == SUBJECT && self.actors[towed].parked {
+            return;
+        }
         self.actors[towed].towed_by = Some(tower);
         let kind = match self.actors[tower].kind {
             Some(Kind::HeavyTruck | Kind::SemiTrailerTruck) => Kind::SemiTrailerTruck,
