@@ -9,6 +9,16 @@ use recrash_model::account::{Kind, KindGroup};
 /// "a panel on the rear of a large white van fell off": so many words may stand between. [tokens]
 const PART_WITHIN: usize = 11;
 
+/// "the driver's brother's car": so many owners before one are followed, among so many words. [tokens]
+const MOST_OWNERS: usize = 4;
+const OWNERS_WITHIN: usize = 16;
+
+/// "a contractor's truck": the truck.
+fn is_owned_vehicle(noun: &Noun, owned: &Noun) -> bool {
+    let person = noun.kind == Some(Kind::Pedestrian) && noun.occupant.is_none();
+    person && owned.kind.is_some_and(Kind::is_vehicle) && owned.occupant.is_none() && !owned.subject
+}
+
 impl Chunker<'_> {
     /// A noun with what stands behind it from `at` on and belongs to it; "'s rear bumper" is left to others.
     pub(super) fn finish(&self, mut noun: Noun, first: usize, at: usize) -> Option<(Noun, usize)> {
@@ -52,13 +62,18 @@ impl Chunker<'_> {
             };
             return Some((noun, behind - first));
         }
-        if let Some((vehicle, behind)) = self.owned_vehicle(&noun, at + 1) {
-            return Some((vehicle, behind - first));
+        // Read once: a chain of owners would be read twice at each of them. A long one is none.
+        let owners = (at.saturating_sub(OWNERS_WITHIN)..at).filter(|&at| self.text(at) == "'s").count();
+        let owned = (owners < MOST_OWNERS).then(|| self.noun(at + 1)).flatten();
+        let owned = owned.filter(|(owned, _)| owned.article == Article::None);
+        let Some((owned, length)) = owned else { return Some((noun, at - first)) };
+        let behind = at + 1 + length;
+        if is_owned_vehicle(&noun, &owned) {
+            return Some((Noun { article: noun.article, ..owned }, behind - first));
         }
         // "the van's driver": the owner of somebody inside.
-        if let Some((mut person, length)) = self.owned_person(at + 1) {
-            person.owner = Some(Box::new(noun));
-            return Some((person, at + 1 + length - first));
+        if owned.occupant.is_some() && owned.owner.is_none() {
+            return Some((Noun { owner: Some(Box::new(noun)), ..owned }, behind - first));
         }
         Some((noun, at - first))
     }
@@ -70,19 +85,18 @@ impl Chunker<'_> {
         let vehicle = noun.kind.is_some_and(Kind::is_vehicle) && noun.occupant.is_none();
         let own = match (self.text(at), self.text(at + 1)) {
             ("operated", "by") => self.company(at + 2) || self.text(at + 2) == "us",
-            ("of", "our") => true,
+            ("of", "our") => {
+                (at + 2..at + 4).any(|at| matches!(self.text(at), "program" | "fleet" | "company" | "test" | "testing"))
+            }
             ("in", "automated" | "autonomous" | "driverless") => matches!(self.text(at + 2), "operation" | "mode"),
             _ => false,
         };
-        one && vehicle && own
+        one && vehicle && own && !self.names_subject()
     }
 
-    /// "a contractor's truck": the truck.
-    fn owned_vehicle(&self, noun: &Noun, at: usize) -> Option<(Noun, usize)> {
-        let person = noun.kind == Some(Kind::Pedestrian) && noun.occupant.is_none();
-        let (vehicle, length) = self.noun(at).filter(|(_, _)| person)?;
-        let owned = vehicle.kind.is_some_and(Kind::is_vehicle) && vehicle.occupant.is_none() && !vehicle.subject;
-        (owned && vehicle.article == Article::None).then_some((Noun { article: noun.article, ..vehicle }, at + length))
+    /// Whether the words up to the end of this sentence call the subject vehicle by a name of its own.
+    fn names_subject(&self) -> bool {
+        (0..self.tokens.len()).any(|at| matches!(self.head(at), Some((Meaning::Subject, _))))
     }
 
     /// "the trailer of a truck": the truck.
@@ -255,11 +269,6 @@ impl Chunker<'_> {
     fn trailer(&self, at: usize) -> Option<usize> {
         let found = (at..at + 3).find(|&at| matches!(self.text(at), "trailer" | "chassis" | "container" | "load"))?;
         (at..found).all(|at| self.tokens[at].kind == TokenKind::Word).then_some(found + 1)
-    }
-
-    fn owned_person(&self, at: usize) -> Option<(Noun, usize)> {
-        let (noun, length) = self.noun(at).filter(|(noun, _)| noun.article == Article::None)?;
-        (noun.occupant.is_some() && noun.owner.is_none()).then_some((noun, length))
     }
 
     /// "a row of traffic cones", "a set of barrels", "a flock of ducks": the things, the animals. A row of cars is a queue.

@@ -243,7 +243,14 @@ impl Chunker<'_> {
             noun.occupant.is_some() || noun.kind.is_some_and(rides)
         };
         let of = self.text(at + 1) == "of" && self.noun(at + 2).is_some_and(|(noun, _)| somebody(&noun));
-        of || at > self.first && self.text(at - 1) == "'s"
+        let owned = at > self.first + 1 && self.text(at - 1) == "'s";
+        // "the highway's shoulder".
+        let of_road = owned
+            && matches!(
+                self.text(at - 2),
+                "highway" | "freeway" | "interstate" | "road" | "roadway" | "street" | "avenue" | "ramp" | "lane"
+            );
+        of || owned && !of_road
     }
 
     /// "the inner of two left turn lanes, and a van in the outer turn lane": that is for the same turn.

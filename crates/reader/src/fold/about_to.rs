@@ -2,6 +2,7 @@
 
 use super::Reading;
 use super::sides::side_of;
+use crate::frame::Frame;
 use crate::lexicon::Progress;
 use crate::world::Actor;
 use recrash_model::account::{Act, ActFact, Fact, LeftRight};
@@ -15,10 +16,17 @@ pub(super) fn turns_next(reading: &Reading<'_>, actor: Actor, acts: &[ActFact]) 
     let meant = reading
         .before(actor)
         .filter(|(_, frame)| frame.progress == Progress::Wished && !frame.negated && frame.act() == Some(Act::Turn));
-    let sided = meant.filter_map(|(number, frame)| {
+    let sided = meant.filter(|(_, frame)| !goes_straight_instead(reading, frame)).filter_map(|(number, frame)| {
         Some(Fact { value: side_of(reading, actor, number, Act::Turn)?, source: reading.of(frame) })
     });
     sided.last().or_else(|| waits_for_arrow(reading, actor))
+}
+
+/// "planned to turn left, but the lane was full, so it continued straight".
+fn goes_straight_instead(reading: &Reading<'_>, frame: &Frame) -> bool {
+    let behind = reading.story.tokens.get(frame.end..reading.story.sentences[frame.sentence].end).unwrap_or_default();
+    let but = behind.iter().position(|token| matches!(token.text.as_str(), "but" | "however" | "instead"));
+    but.is_some_and(|but| behind[but..].iter().any(|token| matches!(token.text.as_str(), "straight" | "instead")))
 }
 
 /// "was waiting for the left turn arrow": what is told of somebody last before these words is told of who waits.

@@ -6,7 +6,7 @@ use crate::frame::Frame;
 use crate::lexicon::{Form, Lexicon, Meaning, Relation, Sense};
 use crate::token::Token;
 use crate::world::{Actor, SUBJECT};
-use recrash_model::account::{Act, Control, ControlDevice, Fact, Obeyed, SignalState};
+use recrash_model::account::{Act, Control, ControlDevice, Fact, Obeyed, SignalState, Source};
 
 /// Signals and signs in front of somebody.
 pub(super) fn controls(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<Control>> {
@@ -326,11 +326,18 @@ fn light_changed(reading: &Reading<'_>, all: &mut [Fact<Control>]) {
             && matches!(word(at + had + 1), "changed" | "changes" | "cycled" | "switched")
             && !colour
     };
+    let red_at = match &control.source {
+        Source::Words { start, .. } => *start,
+        _ => 0,
+    };
     let sentence = |at: usize| reading.story.sentences.iter().position(|run| (run.first..run.end).contains(&at));
+    // "The light changed. It stopped at the red light": to red.
+    let stops = |frame: &Frame| frame.act() == Some(Act::Stop) && frame.happened();
     let own = |at: usize| {
         let first = sentence(at).map_or(at, |number| reading.story.sentences[number].first);
-        let next = reading.before(SUBJECT).any(|(_, frame)| frame.first > at && goes(frame));
-        next && !is_of_others(reading, (first, at + 1))
+        let behind = || reading.before(SUBJECT).map(|(_, frame)| frame).filter(|frame| frame.first > at);
+        let next = behind().find(|frame| goes(frame) || stops(frame)).is_some_and(goes);
+        next && tokens[at].start > red_at && !is_of_others(reading, (first, at + 1))
     };
     if (0..reading.until().min(tokens.len())).any(|at| changes(at) && own(at)) {
         control.value.state = Some(SignalState::TurnedGreen);

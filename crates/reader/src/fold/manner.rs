@@ -11,6 +11,12 @@ fn brakes_hard(words: &[Token]) -> bool {
     let brakes = |at: usize| ["brak", "stop", "slow", "halt", "decel"].iter().any(|stem| word(at).starts_with(stem));
     (0..words.len()).any(|at| match word(at) {
         "heavy" | "abrupt" | "sudden" | "emergency" => brakes(at + 1),
+        // "behind a suddenly braking van": that one does.
+        "heavily" | "abruptly" | "sharply" | "suddenly"
+            if at > 0 && matches!(word(at - 1), "a" | "an" | "the") && word(at + 1).ends_with("ing") =>
+        {
+            false
+        }
         "hard" | "heavily" | "abruptly" | "sharply" | "suddenly" => at > 0 && brakes(at - 1) || brakes(at + 1),
         "slammed" => (at + 1..at + 4).any(brakes),
         _ => false,

@@ -142,7 +142,11 @@ fn leads_to_kerb(tokens: &[Token], from: usize, curb: usize) -> Option<usize> {
 
 /// Words that lead to a junction at which somebody is, and those of who is elsewhere: "near the intersection", "after the intersection".
 const AT_JUNCTION: [&str; 8] = ["at", "for", "approach", "approached", "approaching", "reached", "reaching", "towards"];
-const OFF_JUNCTION: [&str; 15] = [
+const OFF_JUNCTION: [&str; 19] = [
+    "prior",
+    "leaving",
+    "exiting",
+    "clearing",
     "near",
     "after",
     "following",
@@ -215,11 +219,16 @@ fn turns_off(tokens: &[Token], at: usize, end: usize) -> Option<(usize, usize)> 
     let word = |at: usize| tokens.get(at).map_or("", |token| token.text.as_str());
     let turns =
         |at: &usize| matches!(word(*at), "turn" | "turns" | "turned" | "turning") && (*at == 0 || word(*at - 1) != "-");
-    let leaves = |at: usize| matches!(word(at), "exit" | "exited" | "exiting" | "left" | "leaving");
+    // "in the left lane" leaves nothing.
+    let left = |at: usize| word(at) == "left" && matches!(word(at + 1), "a" | "an" | "the" | "its");
+    let leaves = |at: usize| matches!(word(at), "exit" | "exited" | "exiting" | "leaving") || left(at);
     let leads =
         |at: usize| matches!(word(at), "into" | "toward" | "towards" | "from") || leaves(at) && word(at) != "left";
     let out = |at: usize| word(at) == "out" && word(at + 1) == "of";
-    let same_clause = |at: &usize| !matches!(word(*at), "," | ";" | "when" | "while" | "as");
+    // "toward the left lane next to a parking lot" leads to the lane.
+    let same_clause = |at: &usize| {
+        !matches!(word(*at), "," | ";" | "when" | "while" | "as" | "near" | "next" | "beside" | "past" | "by")
+    };
     let before = (at.saturating_sub(NEAR_TURN)..at).rev().take_while(same_clause).find(turns);
     if let Some(first) = before.filter(|first| (*first..at).any(|at| leads(at) || out(at))) {
         return Some((first, end));
@@ -254,7 +263,9 @@ fn lanes(reading: &Reading<'_>, place: &mut Place, first: usize, end: usize) {
         // "a single lane change", "a single lane of traffic" tell nothing of the road.
         let of_lane = matches!(word(2), "change" | "changes" | "shift" | "merge" | "closure")
             || (word(2), word(3)) == ("of", "traffic");
-        let only = word(0) == "only" && at > first && tokens[at - 1].text == "the" && word(1) == "lane";
+        // "the only lane that was open" is one of several.
+        let of_some = matches!(word(2), "that" | "which" | "open" | "not" | "available");
+        let only = (word(0), word(1)) == ("only", "lane") && at > first && tokens[at - 1].text == "the" && !of_some;
         let single = (word(0) == "single" && !of_lane || only).then_some(1);
         let Some(number) = number(&tokens[at].text).or(single) else { continue };
         let next: Vec<&str> = tokens[at + 1..end.min(at + 5)].iter().map(|token| token.text.as_str()).collect();
@@ -294,7 +305,12 @@ fn lanes(reading: &Reading<'_>, place: &mut Place, first: usize, end: usize) {
 fn is_both_ways(reading: &Reading<'_>, (first, at, end): (usize, usize, usize)) -> bool {
     let word = |at: usize| reading.story.tokens.get(at).map_or("", |token| token.text.as_str());
     let road = matches!(word(at + 2), "road" | "street" | "highway" | "stretch") && word(at + 1) == "lane";
-    let one_way = (first..end).any(|at| word(at) == "one" && word(at + 1) == "way");
+    let told = |words: (&str, &str)| {
+        reading.story.tokens.windows(2).any(|pair| (pair[0].text.as_str(), pair[1].text.as_str()) == words)
+    };
+    // "in the left lane of a two-lane road. A van in the right lane": both lead one way.
+    let two = matches!(word(at), "two" | "2") && told(("left", "lane")) && told(("right", "lane"));
+    let one_way = two || told(("one", "way"));
     let of_lane = (first.max(at.saturating_sub(3))..at).any(|at| matches!(word(at), "lane" | "lanes"));
     let way = (at + 3..end.min(at + 5)).any(|at| crate::chunk::bound(word(at)).is_some());
     let any = at > first && word(at - 1) == "a";

@@ -28,7 +28,10 @@ fn at_that_moment(reading: &Reading<'_>, number: usize, at: usize) -> bool {
     let words: Vec<&str> = tokens[at..tokens.len().min(at + 8)].iter().map(|token| token.text.as_str()).collect();
     let then = |three: &[&str]| matches!(three, ["at", "that", "moment" | "time" | "instant" | "point"]);
     let tells = |frame: &&Frame| !frame.aside && (frame.is_contact() || frame.act().is_some());
-    words.windows(3).any(then) && reading.story.frames[..number].iter().rev().find(tells).is_some_and(Frame::is_contact)
+    // "The van struck a parked sedan": no contact with the subject vehicle.
+    let own = |frame: &Frame| frame.who == Some(SUBJECT) || frame.object.is_none_or(|object| object == SUBJECT);
+    let before = reading.story.frames[..number].iter().rev().find(tells);
+    words.windows(3).any(then) && before.is_some_and(|frame| frame.is_contact() && own(frame))
 }
 
 /// "at the time of impact it was doing 30 mph", "was doing 30 mph at the moment of contact", "the crash signal was logged at 30 mph": no

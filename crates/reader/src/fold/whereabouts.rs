@@ -60,6 +60,9 @@ pub(crate) fn place_of(reading: &Reading<'_>, actor: Actor) -> Option<Fact<Origi
         .or_else(|| on_cross_street(&clues))
 }
 
+/// Words in which who is parked across a street is told to block it. [tokens]
+const BLOCKS_WITHIN: usize = 8;
+
 /// "a van was double-parked across the street".
 fn across_the_street(clues: &Clues<'_>) -> Option<Fact<Origin>> {
     let (reading, tokens) = (clues.reading, &clues.reading.story.tokens);
@@ -69,7 +72,10 @@ fn across_the_street(clues: &Clues<'_>) -> Option<Fact<Origin>> {
         let (first, end) = reading.window(number);
         let at = (first..end.saturating_sub(2)).find(|&at| {
             let street = matches!(tokens[at + 2].text.as_str(), "street" | "road" | "roadway");
-            tokens[at].text == "across" && tokens[at + 1].text == "the" && street
+            // "parked across the street, blocking both lanes": athwart.
+            let blocks = |token: &Token| token.text.starts_with("block") || token.text.starts_with("obstruct");
+            let blocked = tokens[at..].iter().take(BLOCKS_WITHIN).take_while(|token| token.text != ".").any(blocks);
+            tokens[at].text == "across" && tokens[at + 1].text == "the" && street && !blocked
         })?;
         Some(reading.told(Origin::Opposite, at, at + 3))
     })

@@ -5,12 +5,27 @@ use super::parser::{Carry, Mention, Parser};
 use super::row::{another_finite, goes_on_behind_comma, relation_behind, transitive};
 use crate::chunk::{Article, Chunk, Joint, Noun, Piece, Placed};
 use crate::lexicon::{Adjective, Form, Occupant, Relation, Sense};
-use crate::token::number;
+use crate::token::{TokenKind, number};
 use crate::world::{Actor, SUBJECT, same_kind};
 use recrash_model::account::{Act, Kind, KindGroup};
 
 /// Words between a noun and those that count who stands before it: "located", "that was stopped". [tokens]
 const FARTHER_WITHIN: usize = 6;
+
+/// "The shuttle struck the rear of the AV": whether what stands behind a noun tells that it met the subject vehicle.
+fn meets_subject(behind: &[Placed]) -> bool {
+    let ends = |placed: &Placed| matches!(&placed.chunk, Chunk::Joint(joint) if *joint != Joint::And);
+    let clause = &behind[..behind.iter().position(ends).unwrap_or(behind.len())];
+    let contact = clause.iter().position(|placed| matches!(placed.chunk, Chunk::Verb(Sense::Contact, _)));
+    let object = contact.and_then(|contact| {
+        clause[contact..].iter().find_map(|placed| match &placed.chunk {
+            Chunk::Noun(noun) => Some(noun.subject && noun.occupant.is_none()),
+            Chunk::Piece(piece) => piece.owner.as_ref().map(|owner| owner.subject),
+            _ => None,
+        })
+    });
+    object == Some(true)
+}
 
 impl Parser<'_> {
     pub(super) fn noun(&mut self, noun: &Noun, all: &[Placed], at: usize, carry: &mut Carry) -> bool {
@@ -62,8 +77,11 @@ impl Parser<'_> {
         self.world.main = carry.main.as_ref().map(|main| main.actor);
         self.world.apart = self.stands_farther(placed.end) || self.goes_on_foot(noun, placed.end);
         self.world.before = carry.relation == Some(Relation::Behind);
+        self.world.strikes = meets_subject(&all[at + 1..]);
+        self.world.counted = self.tokens[placed.first..].iter().take(2).any(|token| token.kind == TokenKind::Number);
         let actor = self.world.resolve(noun, tokens, hint);
         (self.world.apart, self.world.before) = (false, false);
+        (self.world.strikes, self.world.counted) = (false, false);
         let verb = matches!(next, Some(Chunk::Be | Chunk::Verb(..)));
         let actor = if verb && self.is_vehicle_of_story(noun, actor, carry) { SUBJECT } else { actor };
         let actor = if self.is_who_stands(noun, actor, carry) { SUBJECT } else { actor };

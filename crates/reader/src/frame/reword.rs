@@ -443,6 +443,13 @@ fn name_pickups_and_cabs(tokens: &mut Vec<Token>) {
         "time",
         "of",
     ];
+    // "a zone for passenger pickups".
+    for at in 1..tokens.len() {
+        let picked = matches!(tokens[at - 1].text.as_str(), "passenger" | "customer" | "rider" | "curbside");
+        if picked && tokens[at].text == "pickups" {
+            "collections".clone_into(&mut tokens[at].text);
+        }
+    }
     let truck = tokens.iter().any(|token| matches!(token.text.as_str(), "truck" | "semi" | "tractor"));
     let cab = tokens.windows(2).any(|pair| matches!(pair[0].text.as_str(), "a" | "another") && pair[1].text == "cab");
     for token in tokens.iter_mut().filter(|token| cab && !truck && token.text == "cab") {

@@ -124,8 +124,9 @@ impl World {
 
     /// "The shuttle was in its lane": the first whom a story names as known is whom it is told of.
     fn told_of_first(&mut self, sought: &Sought<'_>) -> Option<Meant> {
-        // "Shuttle 4 was halted behind cars".
-        let bare = sought.noun.article == Article::None && self.begins && self.actors.len() == 1;
+        // "Shuttle 4 was halted behind cars"; "Box truck struck the AV" tells of another one.
+        let numbered = sought.noun.shuttle && self.counted;
+        let bare = sought.noun.article == Article::None && self.begins && self.actors.len() == 1 && numbered;
         let known = (sought.is_definite() || bare) && sought.noun.adjectives.is_empty() && !sought.noun.several;
         let things = self.actors[1..].iter().all(|known| !known.acts());
         let unnamed = things && self.actors[SUBJECT].mentions == 0;
@@ -149,7 +150,8 @@ impl World {
         let plain = sought.is_definite() && sought.noun.adjectives.is_empty() && !sought.noun.several;
         let bus = |known: &Known| known.kind.is_some_and(|kind| matches!(kind, Kind::Bus | Kind::SchoolBus));
         let only = !self.actors[1..].iter().any(bus);
-        (sought.noun.shuttle && own && plain && only && sought.hint.is_none()).then_some(Meant::Known(SUBJECT))
+        let meant = sought.noun.shuttle && own && plain && only && !self.strikes;
+        (meant && sought.hint.is_none()).then_some(Meant::Known(SUBJECT))
     }
 
     /// "The left side of the trailer", where nobody else is known who may draw one.
@@ -160,7 +162,7 @@ impl World {
         let may = |kind: Kind| is_truck(kind) || same_kind(kind, Kind::Trailer) || own.is_none() && kind.is_vehicle();
         let draws = |known: &Known| known.kind.is_some_and(may);
         let only = !self.actors[1..].iter().any(draws);
-        (sought.kind == Kind::Trailer && truck && plain && only).then_some(Meant::Known(SUBJECT))
+        (sought.kind == Kind::Trailer && truck && plain && only && !self.strikes).then_some(Meant::Known(SUBJECT))
     }
 
     /// "An Acme AV ("AV") Peterbilt semi-truck": what it is, behind its name.
@@ -428,7 +430,7 @@ impl World {
     /// "The car" where no other one is told of, nor a crash with one.
     fn is_only_car(&self, noun: &Noun) -> bool {
         let met = self.with_vehicle || self.actors[1..].iter().any(|known| known.kind.is_none_or(Kind::is_vehicle));
-        let own = !noun.several && self.actors[SUBJECT].mentions > 0;
+        let own = !noun.several && self.actors[SUBJECT].mentions > 0 && !self.strikes;
         self.plain && self.actors.len() == 1 || !met && own
     }
 

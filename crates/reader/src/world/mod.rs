@@ -122,6 +122,10 @@ pub struct World {
     pub plain: bool,
     /// The noun that is looked up owns the part which touches: "the front of the van made contact".
     pub touches: bool,
+    /// Its clause tells that it struck the subject vehicle, or was struck by it, which it cannot be then.
+    pub strikes: bool,
+    /// A number stands behind the noun that is looked up: "Shuttle 4".
+    pub counted: bool,
     /// So many others are told to stand between the noun that is looked up and the subject vehicle.
     pub apart: bool,
     /// The noun that is looked up stands behind "behind": "stopped behind a van".
@@ -156,6 +160,8 @@ impl World {
             own_driver: false,
             plain: false,
             touches: false,
+            strikes: false,
+            counted: false,
             apart: false,
             before: false,
             main: None,
@@ -275,6 +281,10 @@ impl World {
     /// One tows the other: from here on they are one.
     pub fn tow(&mut self, tower: Actor, towed: Actor) {
         if tower == towed || towed == SUBJECT || self.actors[tower].towed_by.is_some() {
+            return;
+        }
+        // "struck a parked trailer, dragging it".
+        if tower == SUBJECT && self.actors[towed].parked {
             return;
         }
         self.actors[towed].towed_by = Some(tower);

@@ -103,11 +103,15 @@ impl Case<'_> {
     /// It stood in a driveway, and came out of it: backwards, or "was stopped facing north in a driveway and began to turn left".
     pub(super) fn stood_in_a_driveway(&self) -> Told {
         let backs = self.parked && self.did(Act::Reverse);
-        let drives = [Act::Turn, Act::PullOut, Act::SetOff].into_iter().any(|act| self.did(act));
+        let source = stood_in(self.reading, self.actor, &["driveway", "driveways"])?;
+        // "turned into a driveway and was stopped there" came out of none.
+        let drives = self.partner.acts.iter().any(|fact| {
+            let leaves = matches!(fact.act, Act::Turn | Act::PullOut | Act::SetOff) && !fact.after_contact;
+            leaves && is_behind(&fact.source, &source)
+        });
         if !backs && (!drives || self.did(Act::Reverse) || self.behind_first()) {
             return None;
         }
-        let source = stood_in(self.reading, self.actor, &["driveway", "driveways"])?;
         let across = self.clues.any(Relation::Opposite).then_some(LeftRight::Left);
         let stands = |act: Option<Act>| matches!(act, Some(Act::Hold | Act::Park));
         let own = self.account.sv.heading.as_ref().map(|fact| fact.value);
@@ -196,5 +200,13 @@ impl Case<'_> {
             return None;
         }
         told_as(Origin::Parked { side: self.side_of_its_kerb() }, self.words_of(frame.act()?))
+    }
+}
+
+/// Whether words stand behind others.
+fn is_behind(words: &Source, others: &Source) -> bool {
+    match (words, others) {
+        (Source::Words { start, .. }, Source::Words { end, .. }) => start >= end,
+        _ => true,
     }
 }
