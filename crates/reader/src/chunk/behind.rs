@@ -9,10 +9,6 @@ use recrash_model::account::{Kind, KindGroup};
 /// "a panel on the rear of a large white van fell off": so many words may stand between. [tokens]
 const PART_WITHIN: usize = 11;
 
-/// "the driver's brother's car": so many owners before one are followed, among so many words. [tokens]
-const MOST_OWNERS: usize = 4;
-const OWNERS_WITHIN: usize = 16;
-
 /// "a contractor's truck": the truck.
 fn is_owned_vehicle(noun: &Noun, owned: &Noun) -> bool {
     let person = noun.kind == Some(Kind::Pedestrian) && noun.occupant.is_none();
@@ -62,10 +58,8 @@ impl Chunker<'_> {
             };
             return Some((noun, behind - first));
         }
-        // Read once: a chain of owners would be read twice at each of them. A long one is none.
-        let owners = (at.saturating_sub(OWNERS_WITHIN)..at).filter(|&at| self.text(at) == "'s").count();
-        let owned = (owners < MOST_OWNERS).then(|| self.noun(at + 1)).flatten();
-        let owned = owned.filter(|(owned, _)| owned.article == Article::None);
+        // Read once: a chain of owners would be read twice at each of them.
+        let owned = self.noun(at + 1).filter(|(owned, _)| owned.article == Article::None);
         let Some((owned, length)) = owned else { return Some((noun, at - first)) };
         let behind = at + 1 + length;
         if is_owned_vehicle(&noun, &owned) {

@@ -15,6 +15,7 @@ pub use places::bound;
 use crate::lexicon::{Adjective, Form, Found, Lexicon, Meaning, Occupant, Part, Relation, Sense};
 use crate::token::{Token, TokenKind};
 use recrash_model::account::{Compass, Kind, KindGroup, LaneWord, LeftRight};
+use std::cell::Cell;
 
 /// How a noun is introduced.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -243,7 +244,7 @@ pub fn is_colour(word: &str) -> bool {
 
 /// Splits a sentence into chunks.
 pub fn chunks(tokens: &[Token], first: usize, end: usize) -> Vec<Placed> {
-    let chunker = Chunker { lexicon: Lexicon::get(), tokens: &tokens[..end], first };
+    let chunker = Chunker { lexicon: Lexicon::get(), tokens: &tokens[..end], first, depth: Cell::new(0) };
     let mut all: Vec<Placed> = Vec::new();
     let mut at = first;
     while at < end {
@@ -287,6 +288,8 @@ struct Chunker<'a> {
     lexicon: &'static Lexicon,
     tokens: &'a [Token],
     first: usize,
+    /// So many nouns are being read, one in another.
+    depth: Cell<usize>,
 }
 
 impl Chunker<'_> {

@@ -46,9 +46,24 @@ pub(super) fn stands(adjective: &Adjective) -> bool {
     matches!(adjective, Adjective::Stopped | Adjective::Parked)
 }
 
+/// So many nouns stand in one another at most: "the driver of the van's trailer".
+const MOST_NESTED: usize = 5;
+
 impl Chunker<'_> {
     /// Somebody or something that is named here.
     pub(super) fn noun(&self, first: usize) -> Option<(Noun, usize)> {
+        // Each may be read more than once by those around it.
+        let depth = self.depth.get();
+        if depth == MOST_NESTED {
+            return None;
+        }
+        self.depth.set(depth + 1);
+        let noun = self.noun_here(first);
+        self.depth.set(depth);
+        noun
+    }
+
+    fn noun_here(&self, first: usize) -> Option<(Noun, usize)> {
         if let Some(behind) = self.loose_wheel(first) {
             let article = if self.text(first) == "the" { Article::Definite } else { Article::Indefinite };
             return Some((Noun { article, kind: Some(Kind::LooseWheel), ..Noun::unnamed() }, behind - first));
