@@ -1,28 +1,19 @@
 //! A language model looks at replays of what the rules staged, and changes what they do not show as told.
 
+use crate::common::recrash;
 use crate::common::server::{Reply, Server};
-use crate::common::{FEW, recrash};
 use crate::live::{Folder, ledger, read, shares, shown};
+use crate::reviews::{cases, few_retold, well};
 use serde_json::{Value, json};
 use std::path::Path;
 use std::process::Output;
 
 fn run(out: &Path, more: &[&str]) -> Output {
-    recrash(&["run", "--profile", "open", "--records", FEW, "--budget", "4", "--tune-budget", "6"])
-        .args(["--out", out.to_str().unwrap()])
-        .args(more)
-        .output()
-        .unwrap()
+    few_retold(out, "6", more)
 }
 
 fn done(out: &Path, more: &[&str]) -> String {
-    let output = run(out, more);
-    assert!(output.status.success(), "{}", shown(&output));
-    shown(&output)
-}
-
-fn cases(out: &Path) -> Vec<Value> {
-    read(&out.join("summary.json"))["cases"].as_array().unwrap().clone()
+    well(&run(out, more))
 }
 
 fn scenario(out: &Path, case: &Value) -> Value {

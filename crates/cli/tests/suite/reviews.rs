@@ -26,18 +26,31 @@ fn server(wrong: &str) -> Server {
     })
 }
 
-fn run(out: &Path, more: &[&str]) -> Output {
-    recrash(&["run", "--profile", "open", "--records", FEW, "--budget", "4", "--tune-budget", "1"])
+/// A run of four cases by accounts.
+pub(super) fn few_retold(out: &Path, tune_budget: &str, more: &[&str]) -> Output {
+    recrash(&["run", "--profile", "open", "--records", FEW, "--budget", "4", "--tune-budget", tune_budget])
         .args(["--out", out.to_str().unwrap()])
         .args(more)
         .output()
         .unwrap()
 }
 
+/// What a run that went well printed.
+pub(super) fn well(output: &Output) -> String {
+    assert!(output.status.success(), "{}", shown(output));
+    shown(output)
+}
+
+pub(super) fn cases(out: &Path) -> Vec<Value> {
+    read(&out.join("summary.json"))["cases"].as_array().unwrap().clone()
+}
+
+fn run(out: &Path, more: &[&str]) -> Output {
+    few_retold(out, "1", more)
+}
+
 fn done(out: &Path, more: &[&str]) -> String {
-    let output = run(out, more);
-    assert!(output.status.success(), "{}", shown(&output));
-    shown(&output)
+    well(&run(out, more))
 }
 
 /// All files of a suite but those that say how it was asked, with what they hold.
@@ -54,10 +67,6 @@ fn files(out: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
         }
     }
     found
-}
-
-fn cases(out: &Path) -> Vec<Value> {
-    read(&out.join("summary.json"))["cases"].as_array().unwrap().clone()
 }
 
 #[test]
