@@ -147,7 +147,7 @@ impl Programme {
     }
 
     /// Where this leg makes it stop, along the course. [m]
-    fn end_of_gear_m(&self, now: &Progress) -> Option<f64> {
+    pub(super) fn end_of_gear_m(&self, now: &Progress) -> Option<f64> {
         let mut at = usize::from(now.leg);
         loop {
             let leg = &self.course.legs[at];
@@ -314,12 +314,13 @@ fn toward(v: f64, to_mps: f64, rate_mps2: f64) -> (f64, f64) {
 }
 
 /// The constant deceleration that ends at a place, where it is time for it: a step later more than the rate would be needed.
-/// No more than the hardest.
+/// No more than the hardest, and there, to the millimetre, no less than the rate: else it would creep on for ever.
 fn brake_to(v: f64, left_m: f64, rate_mps2: f64, hardest_mps2: f64) -> Option<f64> {
     if v <= 0.0 {
         return None;
     }
     let later_m = left_m - v * STEP_S;
-    let needed = |left_m: f64| v * v / (2.0 * left_m.max(1e-3));
+    let least_mps2 = if left_m < 1e-3 { rate_mps2 } else { 0.0 };
+    let needed = |left_m: f64| (v * v / (2.0 * left_m.max(1e-3))).max(least_mps2);
     (later_m <= v * v / (2.0 * rate_mps2)).then(|| needed(left_m).min(hardest_mps2.max(rate_mps2)))
 }

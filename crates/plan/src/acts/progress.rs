@@ -172,7 +172,9 @@ impl Programme {
                 now.speed_mps = v + a * time_s;
             }
         }
-        now.piece = self.course.piece_at(now.s_m, usize::from(now.piece)) as u16;
+        // Where it changes gear the line goes on the other way; until then it is on this gear's, also a hair behind its end.
+        let on_m = self.end_of_gear_m(now).map_or(now.s_m, |end_m| now.s_m.min(end_m));
+        now.piece = self.course.piece_at(on_m, usize::from(now.piece)) as u16;
     }
 
     /// Pose and velocity of its centre, and its yaw rate. [m/s, rad/s]

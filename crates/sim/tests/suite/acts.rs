@@ -129,6 +129,37 @@ fn reverse_gear_follows_the_way_it_came_by() {
     }
 }
 
+/// Where the gear changes the line goes back the other way; who stops there to the millimetre still faces as it came.
+#[test]
+fn who_stops_where_its_gear_changes_faces_as_it_did() {
+    for (facing_deg, ahead) in [(0.0, 1.0), (180.0, -1.0)] {
+        for steps in 0..60_u8 {
+            let there_m = 9.0 + 0.173 * f64::from(steps);
+            let place = |along_m: f64| Place::at(60.0 + ahead * along_m, 0.0, facing_deg);
+            let leg = |along_m: f64, reverse: bool| Leg::Curve { to: place(along_m), reverse };
+            let stop = Deed::Stop { rate_mps2: 1.7, at_m: Some(there_m) };
+            let acts =
+                vec![act(stop), act(Deed::Hold { for_s: Some(1.0) }), act(Deed::Speed { to_mps: 2.0, rate_mps2: 1.0 })];
+            let mut draft = scene();
+            draft.actors.push(actor(
+                "cp",
+                60.0,
+                0.0,
+                4.0,
+                vec![leg(there_m, false), leg(2.0, true), leg(20.0, false)],
+                acts,
+            ));
+            draft.actors[0].plan.start = place(0.0);
+            let rollout = recorded(draft);
+            let states = &track(&rollout, "cp").states;
+            let turned =
+                states.iter().position(|state| math::wrap_angle(state.heading - states[0].heading).abs() > 1e-6);
+            assert_eq!(turned, None, "{there_m} m at {facing_deg} degrees");
+            assert!((states.last().unwrap().x - (60.0 + 20.0 * ahead)).abs() < 0.05, "{there_m}: {:?}", states.last());
+        }
+    }
+}
+
 #[test]
 fn a_follower_with_a_reaction_time_stops_where_the_formula_says() {
     for (speed, reaction, braking) in [(8.0, 0.7, 4.0), (13.0, 1.3, 5.5), (5.0, 2.0, 3.0)] {
