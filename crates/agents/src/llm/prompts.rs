@@ -127,7 +127,8 @@ pub fn review(brief: &Brief, replay: &str) -> Result<String, AgentError> {
 /// As [`system`].
 pub fn restage(brief: &Brief, staging: &Staging) -> Result<String, AgentError> {
     let facts: Vec<String> = staging.checks.iter().map(fact).collect();
-    restage_question(&quoted_records(brief), &staging_form(&staging.draft), &facts, &staging.replay)
+    let missed: Vec<String> = staging.missed.iter().map(missed_fact).collect();
+    restage_question(&quoted_records(brief), &staging_form(&staging.draft), (&facts, &missed), &staging.replay)
 }
 
 /// Says what a changed scenario shows.
@@ -242,12 +243,12 @@ fn review_question(records: &[QuotedRecord], replay: &str) -> Result<String, Age
 fn restage_question(
     records: &[QuotedRecord],
     scenario: &Value,
-    facts: &[String],
+    (facts, missed): (&[String], &[String]),
     replay: &str,
 ) -> Result<String, AgentError> {
     let (records, replay) = (minijinja::Value::from(Serde(records)), capped(replay.trim_end(), MAX_REPLAY));
-    let (scenario, facts) = (capped(&scenario.to_string(), MAX_REPLAY), facts.to_vec());
-    render("restage_question.md", context! { records, scenario, facts, replay })
+    let (scenario, facts, missed) = (capped(&scenario.to_string(), MAX_REPLAY), facts.to_vec(), missed.to_vec());
+    render("restage_question.md", context! { records, scenario, facts, missed, replay })
 }
 
 fn design_question(id: &str, template: Template, narrative: &str) -> Result<String, AgentError> {
@@ -330,7 +331,7 @@ struct RestageExample {
 }
 
 fn restage_example(example: &RestageExample) -> Result<String, AgentError> {
-    restage_question(&example.records, &example.scenario, &example.facts, &example.replay.join("\n"))
+    restage_question(&example.records, &example.scenario, (&example.facts, &[]), &example.replay.join("\n"))
 }
 
 #[derive(Deserialize)]

@@ -118,7 +118,7 @@ fn a_batch_waits_for_them_and_a_model_that_tunes_is_refused() {
     let output = run(&folder.suite(), &["--design", "scripted", "--llm", "batch"]);
     assert_eq!(output.status.code(), Some(4), "{}", shown(&output));
     let requests = std::fs::read_to_string(folder.suite().join("requests.jsonl")).unwrap();
-    assert_eq!(requests.lines().count(), 4);
+    assert_eq!(requests.lines().count(), 2, "first those that the rules do not show as told");
     let other = Folder::new();
     let output = run(&other.suite(), &["--tune", "scripted", "--llm", "batch"]);
     assert_eq!(output.status.code(), Some(3), "{}", shown(&output));
@@ -127,4 +127,76 @@ fn a_batch_waits_for_them_and_a_model_that_tunes_is_refused() {
         "{}",
         shown(&output)
     );
+}
+
+/// A told signal that is yellow, and green in what the rules stage; and a crash of which a told act is missed.
+const UNSTAGED: [&str; 2] = ["90001-120", "90001-395"];
+
+/// The scenario of a first question.
+fn asked_about(asked: &str) -> Value {
+    let text = asked.split_once("The scenario:\n").and_then(|(_, rest)| rest.lines().next());
+    serde_json::from_str(text.unwrap()).unwrap()
+}
+
+#[test]
+fn a_crash_that_the_rules_do_not_show_as_told_is_staged_by_the_model_and_not_told_where_it_misses_what_they_miss() {
+    let server = Server::start(|request| {
+        let turns = request.messages();
+        let asked = turns[1]["content"].as_str().unwrap();
+        let last = turns.last().unwrap()["content"].as_str().unwrap();
+        if UNSTAGED.iter().any(|report| asked.contains(&format!("Report {report}"))) {
+            assert!(asked.contains("As it is the scenario misses told facts"), "{asked}");
+        }
+        let is_content = !asked.contains(&format!("Report {}", UNSTAGED[0])) || last.contains("misses no told fact");
+        if is_content {
+            return Reply::Text(json!({"as_told": true, "note": ""}).to_string());
+        }
+        assert!(asked.contains("- CP signal or sign: yellow signal; shown is green"), "{asked}");
+        let mut control = asked_about(asked)["control"].clone();
+        for device in control.as_array_mut().unwrap() {
+            device["device"]["signal"]["offset_s"] = json!(4.5);
+        }
+        Reply::Text(json!({"as_told": false, "note": "told is yellow, shown is green", "control": control}).to_string())
+    });
+    let folder = Folder::new();
+    let stories = concat!(env!("CARGO_MANIFEST_DIR"), "/../../eval/stories.csv");
+    let which = format!("report in (\"{}\", \"{}\", \"90001-102\")", UNSTAGED[0], UNSTAGED[1]);
+    let run = |more: &[&str]| {
+        let mut command =
+            recrash(&["run", "--profile", "open", "--records", stories, "--where", &which, "--budget", "all"]);
+        let output =
+            command.args(["--tune-budget", "1", "--out", folder.suite().to_str().unwrap()]).args(more).output();
+        well(&output.unwrap())
+    };
+    let told = || -> Vec<String> {
+        let cases = cases(&folder.suite());
+        cases.iter().map(|case| case["told"].as_str().unwrap().split('/').next().unwrap().to_owned()).collect()
+    };
+    run(&[]);
+    assert_eq!(told(), ["90001-102"]);
+    let asked = ["--design", "scripted", "--repairs", "2", "--base-url", &server.base_url];
+    let text = run(&asked);
+    assert!(text.contains("scripted stages 2 crashes that the rules do not show as told: about "), "{text}");
+    assert!(text.contains("scripted staged 1 of 2 crashes that the rules do not show as told"), "{text}");
+    let mut now = told();
+    now.sort_unstable();
+    assert_eq!(now, ["90001-102", UNSTAGED[0]]);
+    let cases = cases(&folder.suite());
+    let staged = cases.iter().find(|case| case["told"].as_str().unwrap().starts_with(UNSTAGED[0])).unwrap();
+    assert_eq!(staged["changed"]["what"], "told is yellow, shown is green");
+    // Why the ego stood is not drawn, as in what the rules stage.
+    assert_eq!(staged["recorded"]["faithful"], "unchecked", "{staged}");
+    let untold = read(&folder.suite().join("1-accounts.json"))["untold"].clone();
+    assert_eq!(untold.as_array().unwrap().len(), 1);
+    assert!(untold[0]["reason"].as_str().unwrap().contains("SV acts is not drawn"), "{untold}");
+
+    // Nothing is asked again, also where the runs begin anew; without the model it is not told any more.
+    let requests = server.requests().len();
+    let scenario = scenario(&folder.suite(), staged);
+    std::fs::remove_file(folder.suite().join("1-accounts.stagings.json")).unwrap();
+    run(&asked);
+    assert_eq!(server.requests().len(), requests);
+    assert_eq!(self::scenario(&folder.suite(), staged), scenario);
+    run(&["--design", "rules"]);
+    assert_eq!(told(), ["90001-102"]);
 }

@@ -152,6 +152,19 @@ impl Models {
         self.store.write(REQUESTS, lines.as_bytes())?;
         Ok((self.store.path(REQUESTS), questions.len()))
     }
+
+    /// Writes the questions that wait, where answers of a batch are still to come and nothing else went wrong.
+    ///
+    /// # Errors
+    /// [`PipelineError::WaitingForBatch`]; or the file cannot be written.
+    pub fn must_be_answered<T>(&self, answers: &[Result<T, PipelineError>]) -> Result<(), PipelineError> {
+        let waits = |answer: &Result<T, PipelineError>| matches!(answer, Err(PipelineError::AnswerPending));
+        if !answers.iter().any(waits) || !answers.iter().all(|answer| answer.is_ok() || waits(answer)) {
+            return Ok(());
+        }
+        let (requests, count) = self.write_requests()?;
+        Err(PipelineError::WaitingForBatch { requests, count })
+    }
 }
 
 /// Answers from the ledger, where nobody allowed to ask the models.

@@ -81,9 +81,10 @@ impl Retold {
     }
 }
 
-/// Why the crash of an account is not told by its reconstruction; nothing where it is.
-pub(crate) fn why_untold(account: &Account) -> Option<String> {
-    Retold { account: 0, result: reconstruct(account) }.reason()
+/// Why the crash of an account is not told by its reconstruction; nothing where it is, or where it need not be yet and there is one.
+pub(crate) fn why_untold(account: &Account, is_staged_again: bool) -> Option<String> {
+    let retold = Retold { account: 0, result: reconstruct(account) };
+    if is_staged_again && retold.result.is_ok() { None } else { retold.reason() }
 }
 
 /// A told fact that is missed, and what is seen in its place.
@@ -171,20 +172,86 @@ fn is_incomplete(account: &Account, retold: &Retold) -> bool {
         )
 }
 
+/// An incident whose crash is staged, and not as it is told.
+pub(crate) struct Unstaged<'a> {
+    /// Its reports.
+    pub incident: &'a Incident,
+    /// Its account.
+    pub account: &'a Account,
+    /// What there is of it.
+    pub made: &'a Reconstruction,
+}
+
 /// Accounts that somebody else made of these incidents, of so many; none where nobody is asked.
 pub(crate) type ReadAgain<'a> = dyn FnMut(&[Unread], usize) -> Result<Vec<Option<Account>>, PipelineError> + 'a;
 
-/// Groups reports into incidents, reads and reconstructs each, and leaves those usable whose every told fact is shown: the
-/// report that speaks stands for its incident. What is not read whole, or all, goes to `read_again`; its account is taken where the
-/// crash is told by it. Scenarios of what is told go to `stagings`.
+/// Reconstructions of these incidents by somebody else that miss no told fact.
+pub(crate) type StageAgain<'a> = dyn FnMut(&[Unstaged]) -> Result<Vec<Option<Reconstruction>>, PipelineError> + 'a;
+
+/// Who else is asked.
+pub(crate) struct Second<'a> {
+    /// Which incidents are read again.
+    pub reads: Reads,
+    /// Reads them.
+    pub read_again: &'a mut ReadAgain<'a>,
+    /// Stages what the rules do not show as told, where somebody does.
+    pub stage_again: Option<&'a mut StageAgain<'a>>,
+}
+
+/// Takes the accounts that somebody else made: where the crash is told by it, or can be staged by whom `stage_again` asks. Who is not
+/// staged then is left as it was.
 ///
 /// # Errors
-/// Those of `read_again`.
+/// Those of `stage_again`.
+fn take_again(
+    (accounts, retold): (&mut [Account], &mut [Retold]),
+    again: Vec<(usize, Account)>,
+    incidents: &BTreeMap<&str, &Incident>,
+    stage_again: Option<&mut StageAgain>,
+) -> Result<(), PipelineError> {
+    let mut before: BTreeMap<usize, (Account, Retold)> = BTreeMap::new();
+    for (at, account) in again {
+        let other = Retold { account: at, result: reconstruct(&account) };
+        let is_told = other.untold().is_none();
+        if is_told || stage_again.is_some() && other.result.is_ok() {
+            let old = (std::mem::replace(&mut accounts[at], account), std::mem::replace(&mut retold[at], other));
+            before.extend((!is_told).then_some((at, old)));
+        }
+    }
+    let Some(stage_again) = stage_again else { return Ok(()) };
+    let is_unstaged = |each: &&Retold| each.untold() == Some(Untold::NotShown);
+    let asked = retold.iter().filter(is_unstaged).filter_map(|each| {
+        let account = &accounts[each.account];
+        let incident = incidents[account.incident.as_str()];
+        Some(Unstaged { incident, account, made: each.result.as_ref().ok()? })
+    });
+    let asked: Vec<Unstaged> = asked.collect();
+    let staged = stage_again(&asked)?;
+    let at: Vec<usize> = retold.iter().filter(is_unstaged).map(|each| each.account).collect();
+    for (at, made) in at.into_iter().zip(staged) {
+        match made {
+            Some(made) => retold[at].result = Ok(made),
+            None => {
+                if let Some(old) = before.remove(&at) {
+                    (accounts[at], retold[at]) = old;
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Groups reports into incidents, reads and reconstructs each, and leaves those usable whose every told fact is shown: the
+/// report that speaks stands for its incident. What is not read whole, or all, is read by somebody else where there is one; that account is
+/// taken where the crash is told by it. Scenarios of what the rules tell go to `stagings`.
+///
+/// # Errors
+/// Those of `second`.
 pub(crate) fn tell(
     mut set: RecordSet,
     filter: Option<&Filter>,
     progress: &dyn Progress,
-    (reads, read_again): (Reads, &mut ReadAgain),
+    second: Second,
     stagings: &Stagings,
 ) -> Result<(RecordSet, AccountSet), PipelineError> {
     let incidents = records::incidents(&set);
@@ -196,22 +263,19 @@ pub(crate) fn tell(
     let read: Vec<&Incident> = incidents.iter().filter(kept).collect();
     let mut accounts: Vec<Account> = read.par_iter().filter_map(|incident| recrash_reader::account(incident)).collect();
     let mut retold = reconstruct_accounts(&accounts, progress);
-    let is_asked = |at: &usize| reads == Reads::All || is_incomplete(&accounts[*at], &retold[*at]);
+    let is_asked = |at: &usize| second.reads == Reads::All || is_incomplete(&accounts[*at], &retold[*at]);
     let unread: Vec<usize> = (0..accounts.len()).filter(is_asked).collect();
     let of_id: BTreeMap<&str, &Incident> = read.iter().map(|&incident| (incident.id.as_str(), incident)).collect();
     let incident = |account: &Account| of_id[account.incident.as_str()];
     let asked: Vec<Unread> =
         unread.iter().map(|&at| Unread { incident: incident(&accounts[at]), account: &accounts[at] }).collect();
-    let again = read_again(&asked, accounts.len())?;
-    for (at, account) in unread.into_iter().zip(again).filter_map(|(at, account)| Some((at, account?))) {
-        let result = reconstruct(&account);
-        let other = Retold { account: at, result };
-        if other.untold().is_none() {
-            (accounts[at], retold[at]) = (account, other);
-        }
-    }
+    let again = (second.read_again)(&asked, accounts.len())?;
+    let again = unread.into_iter().zip(again).filter_map(|(at, account)| Some((at, account?))).collect();
+    take_again((&mut accounts, &mut retold), again, &of_id, second.stage_again)?;
     for (account, retold) in accounts.iter().zip(&retold) {
-        if let (Ok(made), None) = (&retold.result, retold.untold()) {
+        if let (Ok(made), None) = (&retold.result, retold.untold())
+            && made.draft.source.author.is_rules()
+        {
             stagings.keep(account, made);
         }
     }

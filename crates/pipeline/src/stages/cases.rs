@@ -1,6 +1,8 @@
 //! The cases of a suite: what the stages after selection share.
 
+use super::design::DesignLog;
 use super::failures;
+use super::restage::designer;
 use crate::error::PipelineError;
 use crate::models::cast::AgentLog;
 use crate::reading::scenarios::read_scenario;
@@ -29,6 +31,8 @@ pub(crate) struct Cases {
     pub accounts: Option<AccountSet>,
     /// Who was asked to read which incident again.
     pub readers: BTreeMap<String, AgentLog>,
+    /// How a model staged which incident, of those that the rules do not show as told.
+    stagings: BTreeMap<String, DesignLog>,
     /// Where records stand, by report and by incident, and told accounts by report.
     reports: BTreeMap<String, Vec<usize>>,
     incidents: BTreeMap<String, Vec<usize>>,
@@ -63,10 +67,21 @@ impl Cases {
                 (Some(suite.store().read_json(names::ACCOUNTS)?), suite.store().read_json(names::ACCOUNT_READERS)?)
             }
         };
+        let staged_by = designer(suite).filter(|_| accounts.is_some());
+        let stagings = staged_by.map(|_| suite.store().read_json(names::STAGED_AGAIN)).transpose()?.unwrap_or_default();
         let reports = places(&records.records, |record| Some(&record.id.report_id));
         let incidents = places(&records.records, |record| record.incident_id.as_ref());
         let told = accounts.as_ref().map(|set| places(&set.told, |account| Some(&account.report.report_id)));
-        Ok(Self { reports, incidents, told: told.unwrap_or_default(), records, selection, accounts, readers })
+        Ok(Self { reports, incidents, told: told.unwrap_or_default(), records, selection, accounts, readers, stagings })
+    }
+
+    /// How a model staged the crash of this account, where the rules do not show it as told.
+    pub fn staged_again(&self, account: &Account) -> Option<&DesignLog> {
+        let log = self.stagings.get(&account.incident)?;
+        let told = &self.accounts.as_ref()?.told;
+        let is_of = |at: &&usize| told[**at] == *account;
+        let at = self.told.get(&account.report.report_id)?.iter().find(is_of);
+        at.map(|_| log).filter(|log| log.gave_up.is_empty())
     }
 
     /// The account of a cluster's pick, in a suite that goes by accounts.
@@ -121,7 +136,9 @@ impl Cases {
             let nowhere = Provenance { file: String::new(), row: 0, ..record.provenance.clone() };
             inputs.push(text_of(&CrashRecord { provenance: nowhere, ..record.clone() }));
         }
-        inputs.extend(self.account(cluster).map(text_of));
+        let account = self.account(cluster);
+        inputs.extend(account.map(text_of));
+        inputs.extend(account.and_then(|account| self.staged_again(account)).map(text_of));
         inputs.extend(self.untold(cluster).map(str::to_owned));
         inputs
     }

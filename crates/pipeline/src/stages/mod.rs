@@ -20,6 +20,7 @@ mod retold;
 mod review;
 mod run_summary;
 mod second_reading;
+mod second_staging;
 mod select;
 mod simulate;
 mod summary;

@@ -1,12 +1,14 @@
 //! The first stage: crash files to records.
 
+use super::restage::designer;
 use super::second_reading::{SecondReading, read_again};
+use super::second_staging::{SecondStaging, stage_again};
 use super::{StageReport, StageWork, cases, own, player};
 use crate::error::PipelineError;
 use crate::files::json::{to_compact_json, to_json};
 use crate::models::cast::Reads;
 use crate::reading::records::RecordInput;
-use crate::reading::retelling::{Unread, tell};
+use crate::reading::retelling::{Second, StageAgain, Unread, Unstaged, tell};
 use crate::suite::Suite;
 use crate::suite::names;
 use recrash_model::account::{Account, AccountSet, CrashType};
@@ -43,10 +45,18 @@ pub(super) fn run(work: &StageWork) -> Result<StageReport, PipelineError> {
             logs = told;
             Ok(accounts)
         };
-        let reads = suite.options().cast.reads;
-        let (told, accounts) = tell(value, filter.as_ref(), work.progress, (reads, &mut again), suite.stagings())?;
+        let mut stagings = BTreeMap::new();
+        let mut stage = |unstaged: &[Unstaged]| {
+            let SecondStaging { made, logs: told } = stage_again(suite, unstaged, work.progress)?;
+            stagings = told;
+            Ok(made)
+        };
+        let stage_again: Option<&mut StageAgain> = designer(suite).is_some().then_some(&mut stage);
+        let second = Second { reads: suite.options().cast.reads, read_again: &mut again, stage_again };
+        let (told, accounts) = tell(value, filter.as_ref(), work.progress, second, suite.stagings())?;
         Ok(vec![
             (names::ACCOUNT_READERS.into(), to_json(&logs)),
+            (names::STAGED_AGAIN.into(), to_compact_json(&stagings)),
             (names::RECORDS.into(), to_compact_json(&told)),
             (names::RECORD_REMARKS.into(), to_json(&diagnostics)),
             (names::ACCOUNTS.into(), to_compact_json(&accounts)),
@@ -112,6 +122,13 @@ pub(super) fn inputs(suite: &Suite, input: &RecordInput) -> Vec<String> {
     let by_accounts = suite.profile().records.tells == Tells::Accounts;
     let cast = &suite.options().cast;
     let reader = by_accounts.then(|| player(suite, &cast.paraphrase));
+    // The rules stage what the reader makes of it; a model what they do not show as told.
+    let stager = designer(suite).filter(|_| by_accounts).map(|name| player(suite, name));
     let reads = (by_accounts && cast.reads == Reads::All).then(|| "all".to_owned());
-    std::iter::once(cases::text_of(suite.profile())).chain(reader).chain(reads).chain(input.parts()).collect()
+    std::iter::once(cases::text_of(suite.profile()))
+        .chain(reader)
+        .chain(reads)
+        .chain(stager)
+        .chain(input.parts())
+        .collect()
 }

@@ -4,14 +4,16 @@
 use super::design::{DesignAttempt, DesignLog};
 use super::{Bench, CaseStage, Cases, StageWork, case_inputs, unit_name};
 use crate::error::PipelineError;
+use crate::models::Models;
 use crate::models::cast::{RULES, unusable};
 use crate::progress::ProgressEvent;
 use crate::suite::{Stage, Suite, Work, names};
+use recrash_agents::Brief;
 use recrash_agents::llm::{Question, Repairs, Staging, restage_question};
 use recrash_lab::replay;
 use recrash_model::Diagnostic;
 use recrash_model::account::Account;
-use recrash_model::metrics::{Check, CheckResult};
+use recrash_model::metrics::{Check, CheckKind, CheckResult, Verdict};
 use recrash_model::rollout::{ActorState, Rollout, STEP_S};
 use recrash_model::scenario::{EgoSpec, ScenarioDraft, Source};
 use recrash_model::selection::Cluster;
@@ -29,11 +31,11 @@ const STANDS_MPS: f64 = 0.1;
 const QUESTION_BYTES: usize = 48_000;
 
 /// The model that is cast, where the suite goes by accounts.
-fn designer(suite: &Suite) -> Option<&str> {
+pub(super) fn designer(suite: &Suite) -> Option<&str> {
     Some(suite.options().cast.design.as_str()).filter(|name| *name != RULES)
 }
 
-/// What the model makes of what the rules staged, and how it came to that; as it is where no model is cast.
+/// What the model makes of what the rules staged of a case, and how it came to that; as it is where no model is cast.
 ///
 /// # Errors
 /// An answer is still to come, or the run has to stop.
@@ -44,12 +46,25 @@ pub(super) fn restaged(
     draft: ScenarioDraft,
     log: DesignLog,
 ) -> Result<(ScenarioDraft, DesignLog), PipelineError> {
-    let suite = bench.suite;
+    let records = bench.cases.records_of(cluster);
+    let brief = bench.cases.brief(bench.suite, cluster, &records, Some(account));
+    looked_at(bench.suite, &brief, account, draft, log)
+}
+
+/// The same of what the rules staged of an account, as the first attempt of its log has it.
+///
+/// # Errors
+/// The same.
+pub(super) fn looked_at(
+    suite: &Suite,
+    brief: &Brief,
+    account: &Account,
+    draft: ScenarioDraft,
+    log: DesignLog,
+) -> Result<(ScenarioDraft, DesignLog), PipelineError> {
     let Some((models, name)) = suite.models().zip(designer(suite)) else { return Ok((draft, log)) };
     let (given, of_rules) = rehearse(account, draft.clone(), &[])
-        .map_err(|problems| PipelineError::scenario(&cluster.scenario_id, problems.join("; ")))?;
-    let records = bench.cases.records_of(cluster);
-    let brief = bench.cases.brief(suite, cluster, &records, Some(account));
+        .map_err(|problems| PipelineError::scenario(brief.scenario_id, problems.join("; ")))?;
     let (repairs, attempts) = (Repairs::default(), RefCell::new(log.attempts.clone()));
     let shown: Vec<Check> = given.checks.iter().filter(|check| check.result == CheckResult::Shown).cloned().collect();
     let stage = |draft: ScenarioDraft| {
@@ -59,7 +74,7 @@ pub(super) fn restaged(
         attempts.borrow_mut().push(DesignAttempt { draft, diagnostics: Vec::new(), unfaithful });
         Ok(staged)
     };
-    let made = models.model(name, &suite.options().cast, &repairs).restage(&brief, given.clone(), stage);
+    let made = models.model(name, &suite.options().cast, &repairs).restage(brief, given.clone(), stage);
     let mut log = DesignLog { asked: name.to_owned(), repairs: repairs.all(), attempts: attempts.into_inner(), ..log };
     let taken = match made {
         // All of it may have been taken back.
@@ -121,27 +136,43 @@ fn rehearse(account: &Account, draft: ScenarioDraft, shown: &[Check]) -> Result<
     let verdict = held_against(account, &scenario, &rollout).map_err(|why| vec![why.label().to_owned()])?;
     let replay = replay::in_words(scenario.draft(), &rollout) + &replay::in_the_plane(&rollout);
     let made = Reconstruction { draft: scenario.draft().clone(), rollout, verdict, assumed: Vec::new() };
-    let left_open = made.missed();
-    let is_missed = |check: &&Check| {
-        let lost = || shown.iter().any(|other| check.kind == other.kind && check.expected == other.expected);
-        check.result == CheckResult::NotShown
-            || left_open == Some(check)
-            || check.result != CheckResult::Shown && lost()
-    };
-    let mut missed: Vec<Check> = made.verdict.checks.iter().filter(is_missed).cloned().collect();
-    // Of what has no check any more nothing is to be seen.
-    let is_gone = |other: &&Check| {
-        let same = |check: &Check| check.kind == other.kind && check.expected == other.expected;
-        !made.verdict.checks.iter().any(same)
-    };
-    let gone = shown.iter().filter(is_gone).cloned();
-    missed.extend(gone.map(|check| Check {
-        observed: "nothing of it".to_owned(),
-        result: CheckResult::CannotBeShown,
-        ..check
-    }));
+    let missed = all_missed(&made, shown);
     let Reconstruction { draft, rollout, verdict, .. } = made;
     Ok((Staging { draft, replay, checks: verdict.checks, missed, changed: Vec::new() }, rollout))
+}
+
+/// What a reconstruction does not show, of what is told and of what was shown before.
+fn all_missed(made: &Reconstruction, shown: &[Check]) -> Vec<Check> {
+    let without = |observed: &str, check: &Check| Check {
+        observed: observed.to_owned(),
+        result: CheckResult::CannotBeShown,
+        ..check.clone()
+    };
+    // Nothing else can be said of a run in which nobody touches the ego.
+    let contact = || shown.iter().find(|check| check.kind == CheckKind::Contact);
+    if made.rollout.first_contact_of(0).is_none()
+        && let Some(contact) = contact()
+    {
+        return vec![without("no contact", contact)];
+    }
+    let same = |one: &Check, other: &Check| one.kind == other.kind && one.expected == other.expected;
+    let lost = |check: &&Check| check.result != CheckResult::Shown && shown.iter().any(|other| same(check, other));
+    let missed: Vec<&Check> = made.all_missed().collect();
+    let is_missed = |check: &&Check| missed.contains(check) || lost(check);
+    let checks = &made.verdict.checks;
+    // Of what has no check any more nothing is to be seen.
+    let gone = shown.iter().filter(|other| !checks.iter().any(|check| same(check, other)));
+    checks.iter().filter(is_missed).cloned().chain(gone.map(|check| without("nothing of it", check))).collect()
+}
+
+/// An account's crash as a model staged it.
+///
+/// # Errors
+/// It cannot be run.
+pub(super) fn as_staged(account: &Account, draft: &ScenarioDraft) -> Result<Reconstruction, Vec<String>> {
+    let (staging, rollout) = rehearse(account, draft.clone(), &[])?;
+    let verdict = Verdict { checks: staging.checks };
+    Ok(Reconstruction { draft: staging.draft, rollout, verdict, assumed: Vec::new() })
 }
 
 /// Has the system under test take over some time before the contact, and before the ego began to stop; as in what the rules staged, where
@@ -170,6 +201,11 @@ fn handover_s(speeds: &[f64], contact_s: f64) -> f64 {
     (braked as f64 * STEP_S - ROLLS_S).min(before_s).max(0.0)
 }
 
+/// About what so many first questions cost, in words.
+pub(super) fn question_cost(models: &Models, name: &str, count: usize) -> String {
+    models.estimate(name, count * QUESTION_BYTES, count)
+}
+
 /// Says before the first question how many replays are looked at, and what that costs about.
 pub(super) fn tell_cost(work: &StageWork, declared: &CaseStage, cases: &Cases) -> Result<(), PipelineError> {
     let suite = work.suite;
@@ -177,6 +213,9 @@ pub(super) fn tell_cost(work: &StageWork, declared: &CaseStage, cases: &Cases) -
     let clusters = cases.up_to(suite, Stage::Design);
     let is_open = |cluster: &&Cluster| -> Result<bool, PipelineError> {
         let id = &cluster.scenario_id;
+        if cases.account(cluster).and_then(|account| cases.staged_again(account)).is_some() {
+            return Ok(false);
+        }
         let (unit, inputs) = (unit_name(Stage::Design, id), case_inputs(suite, declared, cases, cluster)?);
         let unit = Work { name: &unit, inputs: &inputs, editable: &(declared.editable)(id) };
         Ok(suite.must_be_current(Stage::Design, &unit).is_err())
@@ -184,7 +223,7 @@ pub(super) fn tell_cost(work: &StageWork, declared: &CaseStage, cases: &Cases) -
     let open: Vec<bool> = clusters.iter().map(is_open).collect::<Result<_, _>>()?;
     let count = open.into_iter().filter(|open| *open).count();
     if count > 0 {
-        let cost = models.estimate(name, count * QUESTION_BYTES, count);
+        let cost = question_cost(models, name, count);
         let what = format!(
             "{name} looks at {count} of {} replays, and changes what they do not show as told: {cost}, and more for each change, as all \
              that was said before is sent again",

@@ -96,6 +96,14 @@ fn narrate(bench: &Bench, cluster: &Cluster) -> Result<Files, PipelineError> {
 fn design(bench: &Bench, cluster: &Cluster) -> Result<Files, PipelineError> {
     let id = &cluster.scenario_id;
     let account = account(bench.suite, id)?;
+    if let Some(log) = bench.cases.staged_again(&account) {
+        let mut log = log.clone();
+        for attempt in &mut log.attempts {
+            attempt.draft = named(attempt.draft.clone(), bench, cluster);
+        }
+        let draft = log.attempts[log.taken].draft.clone();
+        return Ok(vec![(names::scenario(id), to_json(&draft)), (names::design_log(id), to_json(&log))]);
+    }
     let found = bench.suite.stagings().take(&account);
     let staged = found.map_or_else(|| staged(&account), Ok).map_err(|why| PipelineError::scenario(id, why))?;
     let draft = named(staged.draft, bench, cluster);

@@ -1,5 +1,6 @@
 //! A language model reads what the built-in reader did not read whole, or everything, in a suite that goes by accounts.
 
+use super::restage::designer;
 use crate::error::PipelineError;
 use crate::models::cast::{AgentLog, RULES, Reads, reading_brief, unusable};
 use crate::progress::{Progress, ProgressEvent};
@@ -20,10 +21,11 @@ pub(super) struct SecondReading {
     pub logs: BTreeMap<String, AgentLog>,
 }
 
-/// The account with what follows from its facts, where the crash is told by it.
-fn shown(mut account: Account) -> Result<Account, String> {
+/// The account with what follows from its facts, where the crash is told by it; where somebody stages what the rules do not show, it is
+/// enough that there is something to begin with.
+fn shown(mut account: Account, is_staged_again: bool) -> Result<Account, String> {
     recrash_reader::refold(&mut account);
-    match why_untold(&account) {
+    match why_untold(&account, is_staged_again) {
         None => Ok(account),
         Some(why) => Err(format!(
             "the crash cannot be rebuilt from this account: {why}. Read again whether the report says so, who did it, to which side, and \
@@ -67,11 +69,14 @@ pub(super) fn read_again(
 
     let stage = "read";
     progress.event(ProgressEvent::Started { stage, units: unread.len() });
+    let stages = designer(suite).is_some();
     let one = |each: &Unread| -> Result<(Option<Account>, AgentLog), PipelineError> {
         let repairs = Repairs::default();
         let mut answer = None;
         with_brief(each, &mut |brief| {
-            answer = Some(models.model(name, cast, &repairs).read_until(brief, each.account, shown));
+            answer = Some(
+                models.model(name, cast, &repairs).read_until(brief, each.account, |account| shown(account, stages)),
+            );
         });
         progress.event(ProgressEvent::Advanced { stage, unit: &each.account.incident, skipped: false });
         match answer.unwrap_or_else(|| unreachable!("it is asked once")) {
@@ -81,11 +86,7 @@ pub(super) fn read_again(
     };
     let answers: Vec<_> = suite.on_threads(Stage::Narrate, || unread.par_iter().map(one).collect());
     progress.event(ProgressEvent::Finished { stage });
-    let waits = |answer: &Result<_, PipelineError>| matches!(answer, Err(PipelineError::AnswerPending));
-    if answers.iter().any(waits) && answers.iter().all(|answer| answer.is_ok() || waits(answer)) {
-        let (requests, count) = models.write_requests()?;
-        return Err(PipelineError::WaitingForBatch { requests, count });
-    }
+    models.must_be_answered(&answers)?;
     let mut read = SecondReading::default();
     for (each, answer) in unread.iter().zip(answers) {
         let (account, log) = answer?;

@@ -8,6 +8,8 @@ pub const RECORDS: &str = "1-records.json";
 pub const ACCOUNTS: &str = "1-accounts.json";
 /// Which of them a language model was asked about, and what came of it.
 pub const ACCOUNT_READERS: &str = "1-accounts.agents.json";
+/// Crashes that a language model was asked to stage, since the rules do not show them as told, and what came of it.
+pub const STAGED_AGAIN: &str = "1-accounts.stagings.json";
 /// Remarks on the records.
 pub const RECORD_REMARKS: &str = "1-records.diagnostics.json";
 /// Selection.

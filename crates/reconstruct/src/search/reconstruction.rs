@@ -26,7 +26,12 @@ impl Reconstruction {
     /// The first told fact without which this is not the crash: one that is shown otherwise, or something that the two are told to have
     /// done and that is not to be seen. Nothing where the crash is told; others, or why the ego stood, may still not be drawn.
     pub fn missed(&self) -> Option<&Check> {
-        self.verdict.failures().next().or_else(|| self.verdict.checks.iter().find(|check| is_deed_left_open(check)))
+        self.all_missed().next()
+    }
+
+    /// All of them.
+    pub fn all_missed(&self) -> impl Iterator<Item = &Check> {
+        self.verdict.failures().chain(self.verdict.checks.iter().filter(|check| is_deed_left_open(check)))
     }
 }
 
