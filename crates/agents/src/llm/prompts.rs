@@ -126,6 +126,7 @@ pub fn review(brief: &Brief, replay: &str) -> Result<String, AgentError> {
 /// # Errors
 /// As [`system`].
 pub fn restage(brief: &Brief, staging: &Staging) -> Result<String, AgentError> {
+    let fact = |check: &Check| if staging.missed.contains(check) { missed_fact(check) } else { fact(check) };
     let facts: Vec<String> = staging.checks.iter().map(fact).collect();
     let missed: Vec<String> = staging.missed.iter().map(missed_fact).collect();
     restage_question(&quoted_records(brief), &staging_form(&staging.draft), (&facts, &missed), &staging.replay)
