@@ -5,6 +5,8 @@ mod attach;
 mod build;
 mod doors;
 mod handled;
+mod heading;
+mod in_lane;
 mod joint;
 mod likewise;
 mod maneuver;
