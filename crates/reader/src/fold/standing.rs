@@ -30,65 +30,40 @@ struct Told {
 
 /// State at the contact, and how long it had stood.
 pub(super) fn state(reading: &Reading<'_>, actor: Actor) -> (Option<Fact<ContactState>>, Option<Fact<Standing>>) {
-    let contact = reading.contacts.first.map(|contact| &reading.story.frames[contact]);
-    let sentence = contact.map(|frame| frame.sentence);
     // Who stood in its turn came there.
     let mut told = Told { moved: nominal::is_in_turn(reading, actor), ..Told::default() };
     for number in flashback::in_order(reading, actor).0 {
         let frame = &reading.story.frames[number];
-        if reading.doer(frame) == Some(actor)
-            && told.state.is_none()
-            && has_yet_to_stop(frame)
-            && !reading.is_after(number)
-        {
+        if reading.doer(frame) != Some(actor) || reading.is_after(number) {
+            continue;
+        }
+        if told.state.is_none() && has_yet_to_stop(frame) {
             told.state = Some(Fact { value: ContactState::Moving, source: reading.of(frame) });
         }
-        if reading.doer(frame) != Some(actor) || !frame.happened() || reading.is_after(number) {
-            continue;
+        let act = frame.act().filter(|act| frame.happened() && !matches!(act, Act::OpenDoor | Act::Leave));
+        if let Some(act) = act {
+            told.take_in(reading, number, act);
         }
-        let Some(act) = frame.act().filter(|act| !matches!(act, Act::OpenDoor | Act::Leave)) else { continue };
-        // "was driving on after stopping at a sign": it drives.
-        if is_behind_main(reading, frame) && told.since.is_some_and(|(sentence, _)| sentence == frame.sentence) {
-            told.moved |= act != Act::Hold;
-            // "stopped after turning right": it came there.
-            if told.stands() && told.moved && act != Act::Stop {
-                told.standing = Some(Fact { value: Standing::CameToStop, source: reading.of(frame) });
-            }
-            continue;
-        }
-        let aside = frame.aside && Some(frame.sentence) != sentence && told.state.is_some();
-        // "It was traveling at 0 mph", told behind the contact, is no act.
-        let speed = || act == Act::Follow && is_of_last_contact(reading, frame.sentence);
-        let mode = || act == Act::Follow && names_mode(reading, number, frame);
-        if aside || act == Act::Follow && in_headline(reading, frame) || speed() || mode() {
-            continue;
-        }
-        let where_it_is = told.stands() && tells_where(reading, frame);
-        if let Some(standing) = told.standing.as_mut().filter(|_| where_it_is) {
-            // It had come there.
-            *standing = Fact { value: Standing::CameToStop, source: reading.of(frame) };
-        }
-        let braked = act == Act::Slow && told.stands() && avoids(reading, frame);
-        if braked || where_it_is || waits_to_change(reading, number, frame) {
-            continue;
-        }
-        let act = match act {
-            Act::SetOff if gains_speed(reading, number, frame) => Act::Accelerate,
-            Act::SetOff if begins_to_go_on(reading, number, frame) || drives_already(reading, number, frame) => {
-                Act::Follow
-            }
-            Act::Follow if sets_off_at_green(reading, number, frame) => Act::SetOff,
-            Act::Follow | Act::Accelerate if leaves_rest(reading, frame) => Act::SetOff,
-            act => act,
-        };
-        told.add(reading, frame, act);
     }
+    let contact = reading.contacts.first.map(|contact| &reading.story.frames[contact]);
     let hits = contact.filter(|frame| actor != SUBJECT && frame.who == Some(actor) && runs_into(reading, frame));
     if let (Some(frame), Some(ContactState::Stopped)) = (hits, told.state()) {
         told.state = Some(Fact { value: ContactState::Moving, source: reading.of(frame) });
         told.standing = None;
     }
     (told.state, told.standing)
+}
+
+/// An act as it counts for the state: who went on from a standstill set off, and who moved already did not.
+fn as_it_counts(reading: &Reading<'_>, number: usize, act: Act) -> Act {
+    let frame = &reading.story.frames[number];
+    match act {
+        Act::SetOff if gains_speed(reading, number, frame) => Act::Accelerate,
+        Act::SetOff if begins_to_go_on(reading, number, frame) || drives_already(reading, number, frame) => Act::Follow,
+        Act::Follow if sets_off_at_green(reading, number, frame) => Act::SetOff,
+        Act::Follow | Act::Accelerate if leaves_rest(reading, frame) => Act::SetOff,
+        act => act,
+    }
 }
 
 /// "had been waiting, jumped the light and hit it": who runs into another moves.
@@ -111,6 +86,47 @@ impl Told {
         self.state().is_some_and(ContactState::stands)
     }
 
+    /// Takes in a frame of what somebody did before the contact.
+    fn take_in(&mut self, reading: &Reading<'_>, number: usize, act: Act) {
+        let frame = &reading.story.frames[number];
+        // "was driving on after stopping at a sign": it drives.
+        if is_behind_main(reading, frame) && self.is_in_sentence(frame) {
+            self.moved |= act != Act::Hold;
+            // "stopped after turning right": it came there.
+            if self.stands() && self.moved && act != Act::Stop {
+                self.standing = Some(Fact { value: Standing::CameToStop, source: reading.of(frame) });
+            }
+            return;
+        }
+        if self.is_told_besides(reading, number, act) {
+            return;
+        }
+        let where_it_is = self.stands() && tells_where(reading, frame);
+        if let Some(standing) = self.standing.as_mut().filter(|_| where_it_is) {
+            // It had come there.
+            *standing = Fact { value: Standing::CameToStop, source: reading.of(frame) };
+        }
+        let braked = act == Act::Slow && self.stands() && avoids(reading, frame);
+        if !(braked || where_it_is || waits_to_change(reading, number, frame)) {
+            self.add(reading, frame, as_it_counts(reading, number, act));
+        }
+    }
+
+    /// Whether a frame was told in the sentence of the last one.
+    fn is_in_sentence(&self, frame: &Frame) -> bool {
+        self.since.is_some_and(|(sentence, _)| sentence == frame.sentence)
+    }
+
+    /// Whether a frame tells of no act by itself: an adjective in another sentence, a headline, a speed, who drove.
+    fn is_told_besides(&self, reading: &Reading<'_>, number: usize, act: Act) -> bool {
+        let frame = &reading.story.frames[number];
+        let contact = reading.contacts.first.map(|contact| reading.story.frames[contact].sentence);
+        // "It was traveling at 0 mph", told behind the contact, is no act.
+        let speed = || is_of_last_contact(reading, frame.sentence);
+        frame.aside && Some(frame.sentence) != contact && self.state.is_some()
+            || act == Act::Follow && (in_headline(reading, frame) || speed() || names_mode(reading, number, frame))
+    }
+
     /// Adds what one frame tells.
     fn add(&mut self, reading: &Reading<'_>, frame: &Frame, act: Act) {
         let text = reading.text[reading.story.tokens[frame.first].start..].to_lowercase();
@@ -125,14 +141,14 @@ impl Told {
         let words = &reading.story.tokens[self.spoken.min(frame.first)..frame.first];
         let rolls = act == Act::Hold
             && frame.form == Form::Ing
-            && self.since.is_some_and(|(sentence, _)| sentence == frame.sentence)
+            && self.is_in_sentence(frame)
             && words.iter().any(|token| token.text == "mph");
         if rolls && self.state().is_some_and(|state| !state.stands()) {
             return;
         }
         // "backed out and crossed the street, and its tail hit the AV": still backwards.
         let goes_on = matches!(act, Act::Cross | Act::Follow | Act::Enter | Act::Turn);
-        let here = self.since.is_some_and(|(sentence, _)| sentence == frame.sentence);
+        let here = self.is_in_sentence(frame);
         if goes_on && here && self.state() == Some(ContactState::Reversing) && touches_with_rear(reading, frame) {
             return;
         }
@@ -164,42 +180,7 @@ impl Told {
             Act::Follow | Act::Enter if self.stands() && text.starts_with("continu") => return None,
             // "was stopped at a light, heading west".
             Act::Follow | Act::Turn if self.stands() && same_clause => return None,
-            // "reversed and maneuvered to the right": backwards.
-            Act::Drift | Act::Swerve | Act::Park | Act::LaneChange
-                if self.state() == Some(ContactState::Reversing)
-                    // "backed out and then merged into the lane": forward again.
-                    && (act != Act::LaneChange || frame.form == Form::Ing)
-                    && self.since.is_some_and(|(sentence, _)| sentence == frame.sentence) =>
-            {
-                return None;
-            }
-            // "kept backing and started to turn into a space": backwards.
-            Act::Turn
-                if self.state() == Some(ContactState::Reversing)
-                    && self.since.is_some_and(|(sentence, _)| sentence == frame.sentence)
-                    && text
-                        .split('.')
-                        .next()
-                        .is_some_and(|clause| clause.contains("parking") || clause.contains("space")) =>
-            {
-                return None;
-            }
-            // "An SUV reversing along the kerb approached".
-            Act::Follow
-                if self.state() == Some(ContactState::Reversing)
-                    && frame.sense == Sense::Approach
-                    && text.starts_with("approach")
-                    && self.since.is_some_and(|(sentence, _)| sentence == frame.sentence) =>
-            {
-                return None;
-            }
-            // "reversed out of a driveway and entered the lane": backwards.
-            Act::Enter
-                if self.state() == Some(ContactState::Reversing)
-                    && self.since.is_some_and(|(sentence, _)| sentence == frame.sentence) =>
-            {
-                return None;
-            }
+            _ if self.still_backs(frame, act, text) => return None,
             Act::Follow if self.stands() => ContactState::SettingOff,
             Act::Accelerate if self.state() == Some(ContactState::SettingOff) => ContactState::SettingOff,
             // "shifted into reverse and began to accelerate".
@@ -207,6 +188,27 @@ impl Told {
             Act::Pushed | Act::Fall => return None,
             _ => ContactState::Moving,
         })
+    }
+
+    /// Whether who went backwards does so in the same sentence, and still goes backwards.
+    fn still_backs(&self, frame: &Frame, act: Act, text: &str) -> bool {
+        if self.state() != Some(ContactState::Reversing) || !self.is_in_sentence(frame) {
+            return false;
+        }
+        match act {
+            // "reversed and maneuvered to the right", "reversed out of a driveway and entered the lane".
+            Act::Drift | Act::Swerve | Act::Park | Act::Enter => true,
+            // "backed out and then merged into the lane": forward again.
+            Act::LaneChange => frame.form == Form::Ing,
+            // "kept backing and started to turn into a space".
+            Act::Turn => {
+                let clause = text.split('.').next();
+                clause.is_some_and(|clause| clause.contains("parking") || clause.contains("space"))
+            }
+            // "An SUV reversing along the kerb approached".
+            Act::Follow => frame.sense == Sense::Approach && text.starts_with("approach"),
+            _ => false,
+        }
     }
 
     /// How long it has stood.
