@@ -88,70 +88,71 @@ fn american(word: String) -> String {
 /// Splits a narrative into tokens. Hyphens part words; `'s` is a token of its own.
 pub fn tokens(text: &str) -> Vec<Token> {
     let mut all = Vec::new();
-    let mut chars = text.char_indices().peekable();
-    while let Some((start, c)) = chars.next() {
-        if c == '[' {
-            // A masked name, or a withheld part: both end at the next bracket, if that is near.
-            let rest = &text[start..];
-            let length = rest.char_indices().take(120).find(|(_, c)| *c == ']').map(|(at, _)| at + 1);
-            if let Some(length) = length {
-                let end = start + length;
-                let name = length <= 8 || goes_on(&text[end..]);
-                let kind = if name { TokenKind::Name } else { TokenKind::Mark };
-                let text = if name { "[xxx]" } else { "." }.to_owned();
-                all.push(Token { start, end, text, kind, capital: name });
-                while chars.peek().is_some_and(|(at, _)| *at < end) {
-                    chars.next();
-                }
-                continue;
-            }
-        }
-        if c.is_alphanumeric() || c == '#' {
-            let mut end = start + c.len_utf8();
-            while let Some(&(at, next)) = chars.peek() {
-                let inside = next.is_alphanumeric() || (next == '.' && decimal(text, at));
-                if !inside {
-                    break;
-                }
-                end = at + next.len_utf8();
-                chars.next();
-            }
-            let word = &text[start..end];
-            let number = word.trim_start_matches('#').chars().all(|c| c.is_ascii_digit() || c == '.');
-            let kind = if number && word != "#" { TokenKind::Number } else { TokenKind::Word };
-            all.push(Token { start, end, text: american(word.to_lowercase()), kind, capital: c.is_uppercase() });
+    let mut start = 0;
+    while let Some(c) = text[start..].chars().next() {
+        if let Some(token) = masked(text, start).or_else(|| word(text, start)) {
+            start = token.end;
+            all.push(token);
             continue;
         }
         let end = start + c.len_utf8();
-        match c {
-            '\'' | '\u{2019}' | '\u{60}' | '\u{b4}' => {
-                let follows = chars.peek().map(|(_, next)| *next);
-                let touches = all.last().is_some_and(|last: &Token| last.end == start && last.kind != TokenKind::Mark);
-                let its = follows == Some('s') && all.last().is_some_and(|last: &Token| last.text == "it");
-                if let (true, true, Some(last)) = (touches, its, all.last_mut()) {
-                    // "with it's bumper".
-                    chars.next();
-                    (last.text, last.end) = ("its".to_owned(), end + 1);
-                } else if touches && follows == Some('s') {
-                    chars.next();
-                    let text = "'s".to_owned();
-                    all.push(Token { start, end: end + 1, text, kind: TokenKind::Word, capital: false });
-                } else if touches && all.last().is_some_and(|last| last.text.ends_with('s')) {
-                    all.push(Token { start, end, text: "'s".to_owned(), kind: TokenKind::Word, capital: false });
-                }
-            }
+        start = match c {
+            '\'' | '\u{2019}' | '\u{60}' | '\u{b4}' => apostrophe(text, start, end, &mut all),
             // "the?vehicle": a blank that was lost on its way here.
-            '?' if text[end..].starts_with(char::is_alphanumeric) => {}
+            '?' if text[end..].starts_with(char::is_alphanumeric) => end,
             // A line that breaks within a sentence.
-            '\n' if runs_on(&all, text, end) => {}
+            '\n' if runs_on(&all, text, end) => end,
             '.' | ',' | ';' | ':' | '(' | ')' | '!' | '?' | '\n' => {
                 let text = if c == '\n' { "\u{b6}".to_owned() } else { c.to_string() };
                 all.push(Token { start, end, text, kind: TokenKind::Mark, capital: false });
+                end
             }
-            _ => {}
-        }
+            _ => end,
+        };
     }
     all
+}
+
+/// A masked name, or a withheld part: both end at the next bracket, if that is near.
+fn masked(text: &str, start: usize) -> Option<Token> {
+    let rest = text[start..].strip_prefix('[')?;
+    let (at, _) = rest.char_indices().take(MASK_WITHIN).find(|(_, c)| *c == ']')?;
+    let length = at + 2;
+    let end = start + length;
+    let name = length <= 8 || goes_on(&text[end..]);
+    let kind = if name { TokenKind::Name } else { TokenKind::Mark };
+    Some(Token { start, end, text: if name { "[xxx]" } else { "." }.to_owned(), kind, capital: name })
+}
+
+/// Characters of a mask behind its first, at most. [characters]
+const MASK_WITHIN: usize = 119;
+
+/// A word or a number.
+fn word(text: &str, start: usize) -> Option<Token> {
+    let first = text[start..].chars().next().filter(|c| c.is_alphanumeric() || *c == '#')?;
+    let behind = start + first.len_utf8();
+    let ends = |(at, c): &(usize, char)| !(c.is_alphanumeric() || *c == '.' && decimal(text, behind + at));
+    let end = text[behind..].char_indices().find(ends).map_or(text.len(), |(at, _)| behind + at);
+    let word = &text[start..end];
+    let number = word.trim_start_matches('#').chars().all(|c| c.is_ascii_digit() || c == '.');
+    let kind = if number && word != "#" { TokenKind::Number } else { TokenKind::Word };
+    Some(Token { start, end, text: american(word.to_lowercase()), kind, capital: first.is_uppercase() })
+}
+
+/// Reads an apostrophe, which tells whose something is where it touches a word. Where the text goes on.
+fn apostrophe(text: &str, start: usize, end: usize, all: &mut Vec<Token>) -> usize {
+    let Some(last) = all.last_mut().filter(|last| last.end == start && last.kind != TokenKind::Mark) else {
+        return end;
+    };
+    let s = text[end..].starts_with('s');
+    let end = end + usize::from(s);
+    if s && last.text == "it" {
+        // "with it's bumper".
+        (last.text, last.end) = ("its".to_owned(), end);
+    } else if s || last.text.ends_with('s') {
+        all.push(Token { start, end, text: "'s".to_owned(), kind: TokenKind::Word, capital: false });
+    }
+    end
 }
 
 /// Whether a sentence goes on behind a withheld part, which names a place then: "on [REDACTED ...] and turned".

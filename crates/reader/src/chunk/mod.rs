@@ -2,13 +2,14 @@
 
 mod behind;
 mod group;
+mod head;
 mod noun;
 mod piece;
 mod places;
 mod town;
 mod verb;
 
-pub use noun::is_of_traffic;
+pub use head::is_of_traffic;
 pub use piece::is_along_a_side;
 pub use places::bound;
 

@@ -11,6 +11,14 @@ const TRAILER_NAME: usize = 3;
 /// Most tokens before the head of a noun.
 pub(super) const LONGEST_LEAD: usize = 10;
 
+/// Words that describe no noun behind them.
+const SMALL: [&str; 53] = [
+    "and", "or", "but", "then", "when", "as", "while", "that", "which", "who", "where", "is", "was", "were", "are",
+    "be", "been", "had", "has", "have", "it", "they", "not", "due", "because", "after", "before", "until", "once",
+    "if", "than", "'s", "side", "part", "half", "end", "corner", "middle", "edge", "top", "back", "both", "all",
+    "some", "only", "did", "could", "would", "time", "same", "during", "behind", "between",
+];
+
 /// A noun that is being read.
 struct Draft {
     noun: Noun,
@@ -64,22 +72,8 @@ impl Chunker<'_> {
     }
 
     fn noun_here(&self, first: usize) -> Option<(Noun, usize)> {
-        if let Some(behind) = self.loose_wheel(first) {
-            let article = if self.text(first) == "the" { Article::Definite } else { Article::Indefinite };
-            return Some((Noun { article, kind: Some(Kind::LooseWheel), ..Noun::unnamed() }, behind - first));
-        }
-        if let Some(behind) = self.loose_part(first) {
-            let article = if self.text(first) == "the" { Article::Definite } else { Article::Indefinite };
-            return Some((Noun { article, kind: Some(Kind::Debris), ..Noun::unnamed() }, behind - first));
-        }
-        if let Some((behind, one_of)) = self.loose_wheels(first) {
-            let article = match self.text(first) {
-                "the" => Article::Definite,
-                _ if one_of => Article::Indefinite,
-                _ => Article::None,
-            };
-            let noun = Noun { article, kind: Some(Kind::LooseWheel), several: !one_of, one_of, ..Noun::unnamed() };
-            return Some((noun, behind - first));
+        if let Some(loose) = self.loose(first) {
+            return Some(loose);
         }
         if let Some(group) = self.crowd_again(first) {
             return Some((group, 2));
@@ -102,12 +96,9 @@ impl Chunker<'_> {
             return Some(row);
         }
         let mut draft = self.article(first);
-        // "one of them": of those named before.
-        let those = draft.one_of && matches!(self.text(draft.at - 1), "these" | "those");
-        if draft.one_of && (self.text(draft.at) == "them" || those && self.text(draft.at) == ",") {
-            draft.at -= usize::from(those);
+        if let Some(behind) = self.one_of_them(&draft) {
             let noun = Noun { one_of: true, kind: Some(Kind::Vehicle), ..draft.noun };
-            return Some((noun, draft.at + 1 - first));
+            return Some((noun, behind - first));
         }
         let head = loop {
             match self.lead(&mut draft) {
@@ -138,6 +129,40 @@ impl Chunker<'_> {
             noun.article = if noun.one_of { Article::Indefinite } else { Article::Definite };
         }
         Some((noun, length))
+    }
+
+    /// A wheel or a part that came off, or several.
+    fn loose(&self, first: usize) -> Option<(Noun, usize)> {
+        let one = |kind: Kind, behind: usize| {
+            let article = if self.text(first) == "the" { Article::Definite } else { Article::Indefinite };
+            (Noun { article, kind: Some(kind), ..Noun::unnamed() }, behind - first)
+        };
+        if let Some(behind) = self.loose_wheel(first) {
+            return Some(one(Kind::LooseWheel, behind));
+        }
+        if let Some(behind) = self.loose_part(first) {
+            return Some(one(Kind::Debris, behind));
+        }
+        let (behind, one_of) = self.loose_wheels(first)?;
+        let article = match self.text(first) {
+            "the" => Article::Definite,
+            _ if one_of => Article::Indefinite,
+            _ => Article::None,
+        };
+        let noun = Noun { article, kind: Some(Kind::LooseWheel), several: !one_of, one_of, ..Noun::unnamed() };
+        Some((noun, behind - first))
+    }
+
+    /// "one of them", "one of these,": of those named before. The token behind it.
+    fn one_of_them(&self, draft: &Draft) -> Option<usize> {
+        let those = matches!(self.text(draft.at.checked_sub(1)?), "these" | "those");
+        match self.text(draft.at) {
+            _ if !draft.one_of => None,
+            // The article has taken "these".
+            "them" => Some(draft.at + usize::from(!those)),
+            "," if those => Some(draft.at),
+            _ => None,
+        }
     }
 
     /// A draft with its article.
@@ -359,62 +384,8 @@ impl Chunker<'_> {
     /// Whether a word that nobody knows may stand before a noun, as in "a charter bus": no small word, and the noun is next.
     fn may_describe(&self, at: usize) -> bool {
         let word = self.text(at);
-        let small = matches!(
-            word,
-            "and"
-                | "or"
-                | "but"
-                | "then"
-                | "when"
-                | "as"
-                | "while"
-                | "that"
-                | "which"
-                | "who"
-                | "where"
-                | "is"
-                | "was"
-                | "were"
-                | "are"
-                | "be"
-                | "been"
-                | "had"
-                | "has"
-                | "have"
-                | "it"
-                | "they"
-                | "not"
-                | "due"
-                | "because"
-                | "after"
-                | "before"
-                | "until"
-                | "once"
-                | "if"
-                | "than"
-                | "'s"
-                | "side"
-                | "part"
-                | "half"
-                | "end"
-                | "corner"
-                | "middle"
-                | "edge"
-                | "top"
-                | "back"
-                | "both"
-                | "all"
-                | "some"
-                | "only"
-                | "did"
-                | "could"
-                | "would"
-                | "time"
-                | "same"
-                | "during"
-                | "behind"
-                | "between"
-        ) || PREPOSITIONS.contains(&word)
+        let small = SMALL.contains(&word)
+            || PREPOSITIONS.contains(&word)
             || DETERMINERS.contains(&word)
             || word.ends_with("ly")
             || word.ends_with("ed")
@@ -459,132 +430,6 @@ impl Chunker<'_> {
         self.finish(noun, first, at)
     }
 
-    /// "a police officer directing traffic", "was waved on by a police officer": of an officer of whom the story tells nothing like that, nobody
-    /// knows whether it is a car.
-    fn is_on_foot(&self, at: usize, length: usize) -> bool {
-        const FOOT: [&str; 11] =
-            ["direct", "stand", "stood", "wav", "walk", "gestur", "motion", "beckon", "whistl", "stepp", "conducting"];
-        let end = at + length;
-        let police = matches!(self.text(at), "police" | "patrol" | "law");
-        if !police || !matches!(self.text(end - 1), "officer" | "officers") {
-            return true;
-        }
-        let tells = |at: usize| {
-            let word = self.text(at);
-            let stop = word == "conducting" && self.text(at + 1) != "traffic" && self.text(at + 2) != "traffic";
-            word == "foot" || FOOT.iter().any(|stem| word.starts_with(stem)) && !stop
-        };
-        // "A police officer ran into the road, and it struck the police officer": told of any mention.
-        let on_foot = |at: usize| {
-            let begins = (0..at).rfind(|&at| self.text(at) == ".").map_or(0, |stop| stop + 1);
-            let ends = (at..self.tokens.len()).find(|&at| self.text(at) == ".").unwrap_or(self.tokens.len());
-            let met = at.saturating_sub(5).max(begins)..at;
-            (begins..ends).any(tells) || met.into_iter().any(|at| matches!(self.text(at), "struck" | "hit" | "contact"))
-        };
-        let officer = |at: usize| matches!(self.text(at), "officer" | "officers") && self.text(at + 1) != "'s";
-        let stop = (0..self.tokens.len()).any(|at| self.text(at) == "traffic" && self.text(at + 1) == "stop");
-        let next = self.text(end);
-        let drives = matches!(next, "'s" | "'" | "vehicle" | "car" | "with" | "in" | "riding" | "driving") || stop;
-        !drives && (0..self.tokens.len()).any(|at| officer(at) && on_foot(at))
-    }
-
-    pub(super) fn head(&self, at: usize) -> Option<(Meaning, usize)> {
-        let found = self.lexicon.longest(self.tokens, at, |meaning| {
-            matches!(meaning, Meaning::Subject | Meaning::Kind(_) | Meaning::Occupant(_))
-        })?;
-        // "the Pony AV": a company that is called as an animal is, written large.
-        if found.meaning == Meaning::Kind(Kind::Animal) && self.tokens[at].capital && self.company(at) {
-            return None;
-        }
-        if found.meaning == Meaning::Kind(Kind::Pedestrian) && !self.is_on_foot(at, found.length) {
-            return None;
-        }
-        let part = self.part(at).map_or(0, |(_, length)| length);
-        // "the side of its cargo body": of the truck.
-        if found.meaning == Meaning::Kind(Kind::Cargo) && part > found.length {
-            return None;
-        }
-        // "passenger side", "driver door" are parts.
-        if matches!(found.meaning, Meaning::Occupant(_))
-            && (part > found.length || (part > 0 && self.part(at + part).is_some()))
-        {
-            return None;
-        }
-        // "the bike-shared lane", "a wheelchair ramp": parts and places.
-        let of_place = matches!(
-            self.text(at + found.length),
-            "rack" | "racks" | "lane" | "lanes" | "path" | "share" | "shared" | "yard" | "ramp" | "ramps"
-        );
-        if of_place && !matches!(found.meaning, Meaning::Subject) {
-            return None;
-        }
-        // "the tram line", "train tracks", "a bus stop": places.
-        let served = matches!(
-            self.text(at + found.length - 1),
-            "tram" | "train" | "bus" | "rail" | "streetcar" | "trolley" | "railroad" | "railway" | "shuttle"
-        );
-        let place = matches!(
-            self.text(at + found.length),
-            "line" | "lines" | "track" | "tracks" | "stop" | "island" | "platform" | "station" | "shelter" | "depot"
-        );
-        if served && place && !matches!(found.meaning, Meaning::Subject) {
-            return None;
-        }
-        // "a pedestrian beacon", "a HAWK signal": what is for people, or called by an animal, is neither.
-        let kind = match found.meaning {
-            Meaning::Kind(kind) => Some(kind),
-            _ => None,
-        };
-        let next = self.text(at + found.length);
-        let place = matches!(
-            next,
-            "beacon" | "beacons" | "signal" | "button" | "bridge" | "overpass" | "refuge" | "walkway" | "crosswalk"
-        );
-        // "at a pedestrian crossing": "a pedestrian crossing the street" is somebody.
-        let behind = self.text(at + found.length + 1);
-        let ends = matches!(behind, "" | "." | ",") && self.is_behind_a_place_word(at);
-        let place = place || next == "crossing" && (ends || matches!(behind, "sign" | "signal" | "light"));
-        let walks = kind.is_some_and(|kind| matches!(kind.group(), KindGroup::OnFoot | KindGroup::Cyclist));
-        let named = kind == Some(Kind::Animal) && self.tokens[at].capital && matches!(next, "pedestrian" | "crosswalk");
-        if place && (walks || kind == Some(Kind::Animal)) || named {
-            return None;
-        }
-        // "its boom", "the crane's arm": a part, and no gate.
-        let owned =
-            at > self.first && matches!(self.text(at - 1), "its" | "'s") && matches!(self.text(at), "boom" | "arm");
-        if owned && kind == Some(Kind::Gate) {
-            return None;
-        }
-        // "half a car length", "two vehicle lengths": how far.
-        if matches!(next, "length" | "lengths") && kind.is_some_and(Kind::is_vehicle) {
-            return None;
-        }
-        // "the bus only lane", "its vehicle speed".
-        let behind = |ahead: usize| self.text(at + found.length + ahead);
-        let only = behind(0) == "only" && matches!(behind(1), "lane" | "lanes");
-        if only || self.text(at) == "vehicle" && matches!(behind(0), "speed" | "speeds") {
-            return None;
-        }
-        // "light", "sign" of "traffic sign" and "stop sign" are no things that are struck, unless they are.
-        if self.text(at) == "traffic" && is_of_traffic(self.text(at + 1)) {
-            return None;
-        }
-        // "the leaf of the gate", "a tight fit": names of models are written large.
-        let model = self.lexicon.is_model(self.text(at));
-        let of_company = self.text(at) == "pilot"
-            && (self.text(at + 1).starts_with("assist")
-                || at > 0 && matches!(self.tokens[at - 1].text.as_str(), "drive" | "highway"));
-        if model && found.length == 1 && (!self.tokens[at].capital || of_company) {
-            return None;
-        }
-        if (model || kind == Some(Kind::Animal)) && found.length == 1 && self.is_a_town(at) {
-            return None;
-        }
-        if matches!(self.text(at), "sign") && at > self.first && matches!(self.text(at - 1), "stop" | "yield") {
-            return None;
-        }
-        Some((found.meaning, found.length))
-    }
     /// Reads the heads of a noun. Another one at once makes a compound: "pickup truck driver", "Waymo AV operator".
     fn heads(&self, mut draft: Draft, head: (Meaning, usize)) -> Option<(Noun, usize)> {
         let mut next = Some(head);
@@ -753,36 +598,6 @@ impl Chunker<'_> {
             || matches!(meaning, Meaning::Kind(kind) if noun.occupant.is_some() && !kind.is_vehicle());
         (!no_more).then_some((meaning, length))
     }
-}
-
-/// Whether "traffic" before this word is nobody who drives: "traffic light", "traffic rules".
-pub fn is_of_traffic(word: &str) -> bool {
-    const NAMES: [&str; 23] = [
-        "light",
-        "lights",
-        "signal",
-        "signals",
-        "circle",
-        "lane",
-        "lanes",
-        "control",
-        "controls",
-        "congestion",
-        "stop",
-        "conditions",
-        "sign",
-        "cone",
-        "barrier",
-        "island",
-        "cones",
-        "rules",
-        "rule",
-        "law",
-        "laws",
-        "regulations",
-        "code",
-    ];
-    NAMES.contains(&word)
 }
 
 /// Whether a thing of this kind has parts and people in it.

@@ -101,6 +101,17 @@ fn direction(word: &str) -> Option<Compass> {
     })
 }
 
+/// One of four directions by its letter.
+fn letter(word: &str) -> Option<Compass> {
+    Some(match word {
+        "n" => Compass::North,
+        "s" => Compass::South,
+        "e" => Compass::East,
+        "w" => Compass::West,
+        _ => return None,
+    })
+}
+
 /// The way of a road or a side of it: "northbound".
 pub fn bound(word: &str) -> Option<Compass> {
     word.strip_suffix("bound").and_then(direction)
@@ -126,56 +137,44 @@ impl Chunker<'_> {
         // "n/b": one mark between the two letters.
         let slashed = |next: &Token| next.text == "b" && next.start == self.tokens[at].end + 1;
         if self.tokens.get(at + 1).is_some_and(slashed) {
-            let compass = match word {
-                "n" => Compass::North,
-                "s" => Compass::South,
-                "e" => Compass::East,
-                "w" => Compass::West,
-                _ => return None,
-            };
-            return Some((compass, 2));
+            return letter(word).map(|compass| (compass, 2));
         }
-        match word {
-            "nb" => return Some((Compass::North, 1)),
-            "sb" => return Some((Compass::South, 1)),
-            "eb" => return Some((Compass::East, 1)),
-            "wb" => return Some((Compass::West, 1)),
-            _ => {}
+        // "nb".
+        if let Some(compass) = word.strip_suffix('b').and_then(letter) {
+            return Some((compass, 1));
         }
-        let mut compass = direction(word)?;
-        let mut length = 1;
-        // "south west bound".
-        if let (Compass::North | Compass::South, Some(second)) = (
-            compass,
-            self.text(at + 1).strip_suffix("bound").and_then(direction).or_else(|| direction(self.text(at + 1))),
-        ) {
-            compass = match (compass, second) {
-                (Compass::North, Compass::East) => Compass::Northeast,
-                (Compass::North, Compass::West) => Compass::Northwest,
-                (Compass::South, Compass::East) => Compass::Southeast,
-                (Compass::South, Compass::West) => Compass::Southwest,
-                _ => compass,
-            };
-            length = 2;
-        }
-        if self.text(at + length) == "bound" || self.text(at + length) == "bounds" {
+        let (compass, length) = self.in_two_words(direction(word)?, at);
+        if matches!(self.text(at + length), "bound" | "bounds") {
             return Some((compass, length + 1));
         }
-        // A street's name: "on West Elm Street", "US-9 South".
-        let token = &self.tokens[at];
-        let named_behind = self.tokens.get(at + length).is_some_and(|next| {
-            next.capital && next.kind != TokenKind::Name || token.capital && next.text.contains("xxx")
-        });
+        let place = matches!(self.text(at + length), "side" | "of" | "corner" | "end" | "leg" | "curb" | "crosswalk");
+        (!place && !self.is_in_a_name(at, length)).then_some((compass, length))
+    }
+
+    /// "south west bound": a direction with the one behind it, and its tokens.
+    fn in_two_words(&self, compass: Compass, at: usize) -> (Compass, usize) {
+        let next = self.text(at + 1);
+        let second = next.strip_suffix("bound").and_then(direction).or_else(|| direction(next));
+        let (Compass::North | Compass::South, Some(second)) = (compass, second) else { return (compass, 1) };
+        let both = match (compass, second) {
+            (Compass::North, Compass::East) => Compass::Northeast,
+            (Compass::North, Compass::West) => Compass::Northwest,
+            (Compass::South, Compass::East) => Compass::Southeast,
+            (Compass::South, Compass::West) => Compass::Southwest,
+            _ => compass,
+        };
+        (both, 2)
+    }
+
+    /// A street's name: "on West Elm Street", "US-9 South".
+    fn is_in_a_name(&self, at: usize, length: usize) -> bool {
+        let capital = self.tokens[at].capital;
+        let named_behind = self
+            .tokens
+            .get(at + length)
+            .is_some_and(|next| next.capital && next.kind != TokenKind::Name || capital && next.text.contains("xxx"));
         let named_before = at > self.first && self.tokens[at - 1].kind == TokenKind::Number;
-        if (token.capital && named_behind)
-            || named_before
-            || (token.capital && self.text(at.wrapping_sub(1)) == "street")
-        {
-            return None;
-        }
-        matches!(self.text(at + length), "side" | "of" | "corner" | "end" | "leg" | "curb" | "crosswalk")
-            .then_some(())
-            .map_or(Some((compass, length)), |()| None)
+        named_before || capital && (named_behind || self.text(at.wrapping_sub(1)) == "street")
     }
 
     /// A lane, and its tokens: "the left turn lane", "the shoulder".

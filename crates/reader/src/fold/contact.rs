@@ -28,71 +28,53 @@ pub(crate) struct Contacts {
 impl Contacts {
     /// Looks through a story.
     pub fn find(story: &Story, record: &CrashRecord) -> Self {
-        let frames = &story.frames;
-        let touching: Vec<(usize, Actor)> = frames
+        let touching: Vec<(usize, Actor)> = story
+            .frames
             .iter()
             .enumerate()
             .filter(|(_, frame)| frame.is_contact())
             .filter_map(|(number, frame)| with_whom(story, record, frame, number).map(|partner| (number, partner)))
             .collect();
-        let mut contacts = Self::default();
-        if let Some(&(first, partner)) = touching.first() {
-            // A headline that tells the contact is told again, in full, by the story.
-            let early = headline_of(story);
-            // "A van rear-ended it. ... A passenger car rear-ended it": the same one, called otherwise.
-            let names = |frame: &Frame, other: Actor| {
-                // "hit by the second of two vans. ... A second van": whom nothing else is told of.
-                let only = story
-                    .frames
-                    .iter()
-                    .all(|told| told.sentence == frames[first].sentence || told.who != Some(partner));
-                [frame.who, frame.object].contains(&Some(other)) && (!story.world.actors[other].another || only)
-            };
-            // "The collision took place on Elm Street" says where, and tells nothing else.
-            let bare = |frame: &Frame| {
-                frame.sense == Sense::ContactMade && frame.who.is_none() && frame.object.is_none() && frame.on.is_none()
-            };
-            let fuller = touching.iter().filter(|(number, _)| !bare(&frames[*number]));
-            let again =
-                fuller.chain(touching.iter().filter(|(number, _)| bare(&frames[*number]))).find(|(number, other)| {
-                    let frame = &frames[*number];
-                    frames[first].sentence == early
-                        && frame.sentence > early
-                        && !shoved(story, frame)
-                        && (*other == partner || story.world.actors[*other].mentions > 1 || names(frame, *other))
-                        && alike(story, partner, *other)
-                });
-            // "... struck it from behind. It then struck the left side": two events, no headline.
-            let told = &frames[first];
-            let full = told.on.is_some() || told.with.is_some() || !told.relations.is_empty();
-            let again = again.filter(|(number, _)| !(full && goes_on(story, *number)));
-            let named = [frames[first].who, frames[first].object].contains(&Some(partner));
-            contacts.retold = again.map(|_| partner).filter(|headline| {
-                named && !story.world.actors[*headline].several && again.is_some_and(|(_, other)| other != headline)
-            });
-            let (first, partner) = again.copied().unwrap_or((first, partner));
-            let (first, partner) = as_column(story, record, &touching, first, partner);
-            contacts.first = Some(first);
-            contacts.partner = Some(partner);
-            let sort_of = |actor: Actor| story.world.actors[actor].kind.and_then(sort);
-            let column = record.partner.known().and_then(column_sort);
-            let as_told = sort_of(partner).is_none() || column.is_none() || sort_of(partner) == column;
-            contacts.of_second =
-                !as_told && touching.iter().any(|(number, actor)| *number > first && sort_of(*actor) == column);
-            contacts.earlier = (0..frames.len())
-                .filter(|&number| between_others(&frames[number]) && comes_first(story, number, first, &touching))
-                .collect();
-            return contacts;
+        match touching.first() {
+            Some(&first) => Self::of_touch(story, record, &touching, first),
+            None => Self::of_no_touch(story, record),
         }
+    }
+
+    /// Of a story that tells the contact of the subject vehicle: which one, and with whom.
+    fn of_touch(story: &Story, record: &CrashRecord, touching: &[(usize, Actor)], first: (usize, Actor)) -> Self {
+        let frames = &story.frames;
+        let again = told_again(story, touching, first);
+        let (told, headline) = (&frames[first.0], first.1);
+        let named = [told.who, told.object].contains(&Some(headline)) && !story.world.actors[headline].several;
+        let retold = again.filter(|(_, other)| named && *other != headline).map(|_| headline);
+        let (first, partner) = again.unwrap_or(first);
+        let (first, partner) = as_column(story, record, touching, first, partner);
+        let sort_of = |actor: Actor| story.world.actors[actor].kind.and_then(sort);
+        let column = record.partner.known().and_then(column_sort);
+        let as_told = sort_of(partner).is_none() || column.is_none() || sort_of(partner) == column;
+        let earlier = (0..frames.len())
+            .filter(|&number| between_others(&frames[number]) && comes_first(story, number, first, touching));
+        Self {
+            first: Some(first),
+            partner: Some(partner),
+            earlier: earlier.collect(),
+            others_only: false,
+            of_second: !as_told && touching.iter().any(|(number, actor)| *number > first && sort_of(*actor) == column),
+            retold,
+        }
+    }
+
+    /// Of a story that tells no contact of the subject vehicle: that of others, or what comes next to one.
+    fn of_no_touch(story: &Story, record: &CrashRecord) -> Self {
+        let frames = &story.frames;
+        let mut contacts = Self::default();
         // The one that names parts tells most.
         let apart = |&number: &usize| between_others(&frames[number]);
         let others = (0..frames.len())
             .filter(apart)
             .find(|&number| frames[number].on.is_some() || frames[number].with.is_some())
             .or_else(|| (0..frames.len()).find(apart));
-        let untouched = frames.iter().any(|frame| {
-            frame.negated && matches!(frame.sense, Sense::Contact) && [frame.who, frame.object].contains(&Some(SUBJECT))
-        });
         contacts.partner = announced(story).or_else(|| only_other(story, record));
         if let (Some(number), Some(who)) = (others, others.and_then(|number| frames[number].who)) {
             let headline = frames
@@ -105,20 +87,11 @@ impl Contacts {
                 contacts.first = Some(number);
             }
         }
-        contacts.others_only |= untouched;
-        if contacts.first.is_none() {
-            let headline = frames.iter().position(|frame| frame.sense == Sense::Headline);
-            // Without a contact of its own, the last thing the partner does is next to it.
-            contacts.first = contacts.partner.and_then(|partner| {
-                let acts = |frame: &Frame| {
-                    frame.who == Some(partner)
-                        && frame.act().is_some_and(|act| act != Act::Leave)
-                        && Some(frame.sentence) != headline
-                };
-                let before = |frame: &Frame| acts(frame) && !tells_harm(story, frame.sentence);
-                frames.iter().rposition(before).or_else(|| frames.iter().rposition(acts))
-            });
-        }
+        contacts.others_only |= frames.iter().any(|frame| {
+            frame.negated && matches!(frame.sense, Sense::Contact) && [frame.who, frame.object].contains(&Some(SUBJECT))
+        });
+        // Without a contact of its own, the last thing the partner does is next to it.
+        contacts.first = contacts.first.or_else(|| contacts.partner.and_then(|partner| last_act_of(story, partner)));
         contacts
     }
 
@@ -129,6 +102,46 @@ impl Contacts {
             pair.contains(&Some(actor)) && pair.contains(&self.partner)
         })
     }
+}
+
+/// The contact of a headline told again, in full, by the story.
+fn told_again(story: &Story, touching: &[(usize, Actor)], (first, partner): (usize, Actor)) -> Option<(usize, Actor)> {
+    let frames = &story.frames;
+    let early = headline_of(story);
+    let told = &frames[first];
+    // "A van rear-ended it. ... A passenger car rear-ended it": the same one, called otherwise.
+    let names = |frame: &Frame, other: Actor| {
+        // "hit by the second of two vans. ... A second van": whom nothing else is told of.
+        let only = frames.iter().all(|other| other.sentence == told.sentence || other.who != Some(partner));
+        [frame.who, frame.object].contains(&Some(other)) && (!story.world.actors[other].another || only)
+    };
+    // "The collision took place on Elm Street" says where, and tells nothing else.
+    let bare = |frame: &Frame| {
+        frame.sense == Sense::ContactMade && frame.who.is_none() && frame.object.is_none() && frame.on.is_none()
+    };
+    let fuller = touching.iter().filter(|(number, _)| !bare(&frames[*number]));
+    let again = fuller.chain(touching.iter().filter(|(number, _)| bare(&frames[*number]))).find(|(number, other)| {
+        let frame = &frames[*number];
+        told.sentence == early
+            && frame.sentence > early
+            && !shoved(story, frame)
+            && (*other == partner || story.world.actors[*other].mentions > 1 || names(frame, *other))
+            && alike(story, partner, *other)
+    });
+    // "... struck it from behind. It then struck the left side": two events, no headline.
+    let full = told.on.is_some() || told.with.is_some() || !told.relations.is_empty();
+    again.filter(|(number, _)| !(full && goes_on(story, *number))).copied()
+}
+
+/// The last thing that somebody does, before what came of it.
+fn last_act_of(story: &Story, actor: Actor) -> Option<usize> {
+    let frames = &story.frames;
+    let headline = frames.iter().position(|frame| frame.sense == Sense::Headline);
+    let acts = |frame: &Frame| {
+        frame.who == Some(actor) && frame.act().is_some_and(|act| act != Act::Leave) && Some(frame.sentence) != headline
+    };
+    let before = |frame: &Frame| acts(frame) && !tells_harm(story, frame.sentence);
+    frames.iter().rposition(before).or_else(|| frames.iter().rposition(acts))
 }
 
 /// Kinds that a column can hold against each other: whoever is on foot, on two wheels, an animal, or in a vehicle.

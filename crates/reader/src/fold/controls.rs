@@ -11,26 +11,11 @@ use recrash_model::account::{Act, Control, ControlDevice, Fact, Obeyed, SignalSt
 /// Signals and signs in front of somebody.
 pub(super) fn controls(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<Control>> {
     let mut all: Vec<Fact<Control>> = Vec::new();
-    let tokens = &reading.story.tokens;
-    let mut turned_green = None;
+    let mut turned = None;
     for (number, frame) in reading.story.frames.iter().enumerate() {
-        let changes = match frame.sense {
-            Sense::LightGreen | Sense::LightRed | Sense::LightYellow
-                if is_of_others(reading, told_in(reading, frame)) =>
-            {
-                None
-            }
-            Sense::LightGreen if turns_on_red(reading) => None,
-            // "waiting for the light to turn green": it is red.
-            Sense::LightGreen if frame.form == Form::Base && !frame.happened() => Some(SignalState::Red),
-            Sense::LightGreen if was_green(reading, frame, &all) => Some(SignalState::Green),
-            Sense::LightGreen => Some(SignalState::TurnedGreen),
-            Sense::LightRed => Some(SignalState::TurnedRed),
-            Sense::LightYellow => Some(SignalState::Yellow),
-            _ => None,
-        };
-        if let Some(state) = changes.filter(|_| !reading.is_after(number)) {
-            turned_green = Some((state, frame.first, frame.end));
+        let changes = light_changes(reading, frame, &all).filter(|_| !reading.is_after(number));
+        if let Some(state) = changes {
+            turned = Some((state, frame.first, frame.end));
             if let Some(control) = all.iter_mut().find(|control| control.value.device == ControlDevice::Signal) {
                 control.value.state = Some(state);
             }
@@ -42,73 +27,129 @@ pub(super) fn controls(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<Control>
         }
         let (first, end) = reading.window(number);
         let end = if struck { of_the_contact(reading, number, end) } else { in_its_queue(reading, number, end) };
-        let ran = frame.act().filter(|_| frame.happened());
-        let passed = not_done(reading, number, frame);
-        let ran = if frame.negated { passed } else { ran };
+        let ran =
+            if frame.negated { not_done(reading, number, frame) } else { frame.act().filter(|_| frame.happened()) };
+        let clause = Clause { reading, actor, number, first, end, struck, ran };
         for at in first..end {
-            let words: Vec<&str> = tokens[at..end.min(at + 4)].iter().map(|token| token.text.as_str()).collect();
-            let Some((device, state, length)) = named(&words).or_else(|| shown(reading, at, end)) else { continue };
-            let state = state.or_else(|| shown(reading, at + length - 1, end).and_then(|(_, state, _)| state));
-            // "as there is no stop sign", "without a signal", "does not have a light".
-            let before = |back: usize| at.checked_sub(back).map_or("", |at| tokens[at].text.as_str());
-            let none = (1..3).any(|back| matches!(before(back), "no" | "without"))
-                || (1..4).any(|back| before(back) == "have" && before(back + 1) == "not");
-            // "hit it at a red light", and not "hit it on a red light".
-            let there = !struck || (1..4).any(|back| before(back) == "at");
-            let none = none || actor == SUBJECT && is_of_side_street(&tokens[first..at]);
-            if none && !frame.negated || !there || is_lamp(reading, (at, length)) {
-                continue;
-            }
-            // "awaiting a green light": it is red.
-            let awaited = (1..4).any(|back| before(back).starts_with("await"))
-                || (2..5).any(|back| before(back).starts_with("wait") && before(back - 1) == "for");
-            let state = if awaited && state == Some(SignalState::Green) { Some(SignalState::Red) } else { state };
-            let broken = match device {
-                ControlDevice::Signal => ran == Some(Act::RunRed),
-                _ => ran == Some(Act::RunStop),
-            };
-            // "was slowing for a red light", and did not go on into the junction.
-            let slows =
-                || ran == Some(Act::Slow) && state == Some(SignalState::Red) && !goes_in(reading, actor, number);
-            let obeyed = if broken {
-                Some(Obeyed::No)
-            } else if ran.is_some_and(|act| matches!(act, Act::Stop | Act::Hold)) && state != Some(SignalState::Green)
-                || slows()
-            {
-                Some(Obeyed::Yes)
-            } else {
-                None
-            };
-            match all.iter_mut().find(|control| control.value.device == device) {
-                Some(known) => {
-                    // "waited at a red light and entered on a green light".
-                    let moves = matches!(ran, Some(Act::SetOff | Act::Enter | Act::Turn | Act::Follow));
-                    let turned =
-                        known.value.state == Some(SignalState::Red) && state == Some(SignalState::Green) && moves;
-                    known.value.state =
-                        if turned { Some(SignalState::TurnedGreen) } else { known.value.state.or(state) };
-                    known.value.obeyed = if broken { Some(Obeyed::No) } else { known.value.obeyed.or(obeyed) };
-                }
-                None => all.push(reading.told(Control { device, state, obeyed }, at, at + length)),
+            if let Some((control, length)) = clause.control(at) {
+                clause.add(control, (at, length), &mut all);
             }
         }
     }
     if actor == SUBJECT {
-        had_a_light(reading, &mut all);
-        was_at_a_sign(reading, &mut all);
-        of_that_queue(reading, &mut all, turned_green.map(|(state, ..)| state));
-        of_those_ahead(reading, &mut all, turned_green.map(|(state, ..)| state));
-        if turned_green.is_none() {
-            told_alone(reading, &mut all);
-            light_changed(reading, &mut all);
-        }
-    }
-    if let (Some((state, first, end)), true) =
-        (turned_green, actor == SUBJECT && all.iter().all(|control| control.value.device != ControlDevice::Signal))
-    {
-        all.push(reading.told(Control { device: ControlDevice::Signal, state: Some(state), obeyed: None }, first, end));
+        told_besides(reading, &mut all, turned);
     }
     all
+}
+
+/// Adds what is told of lights and signs in no clause of what the subject vehicle does.
+fn told_besides(reading: &Reading<'_>, all: &mut Vec<Fact<Control>>, turned: Option<(SignalState, usize, usize)>) {
+    let state = turned.map(|(state, ..)| state);
+    had_a_light(reading, all);
+    was_at_a_sign(reading, all);
+    of_that_queue(reading, all, state);
+    of_those_ahead(reading, all, state);
+    let Some((state, first, end)) = turned else {
+        told_alone(reading, all);
+        light_changed(reading, all);
+        return;
+    };
+    if all.iter().all(|control| control.value.device != ControlDevice::Signal) {
+        all.push(reading.told(Control { device: ControlDevice::Signal, state: Some(state), obeyed: None }, first, end));
+    }
+}
+
+/// What a frame tells of a light that changes.
+fn light_changes(reading: &Reading<'_>, frame: &Frame, before: &[Fact<Control>]) -> Option<SignalState> {
+    let of_others = || is_of_others(reading, told_in(reading, frame));
+    match frame.sense {
+        Sense::LightGreen | Sense::LightRed | Sense::LightYellow if of_others() => None,
+        Sense::LightGreen if turns_on_red(reading) => None,
+        // "waiting for the light to turn green": it is red.
+        Sense::LightGreen if frame.form == Form::Base && !frame.happened() => Some(SignalState::Red),
+        Sense::LightGreen if was_green(reading, frame, before) => Some(SignalState::Green),
+        Sense::LightGreen => Some(SignalState::TurnedGreen),
+        Sense::LightRed => Some(SignalState::TurnedRed),
+        Sense::LightYellow => Some(SignalState::Yellow),
+        _ => None,
+    }
+}
+
+/// The words of what somebody did, or of how it was struck.
+struct Clause<'a> {
+    reading: &'a Reading<'a>,
+    actor: Actor,
+    /// Its frame, and its tokens.
+    number: usize,
+    first: usize,
+    end: usize,
+    /// It tells that it was struck.
+    struck: bool,
+    /// What it did, or is told not to have done.
+    ran: Option<Act>,
+}
+
+impl Clause<'_> {
+    /// The word that stands so far before a token.
+    fn before(&self, at: usize, back: usize) -> &str {
+        at.checked_sub(back).map_or("", |at| self.reading.story.tokens[at].text.as_str())
+    }
+
+    /// The light or sign at this token, in front of who does what is told here, and how many tokens name it.
+    fn control(&self, at: usize) -> Option<(Control, usize)> {
+        let tokens = &self.reading.story.tokens;
+        let words: Vec<&str> = tokens[at..self.end.min(at + 4)].iter().map(|token| token.text.as_str()).collect();
+        let (device, state, length) = named(&words).or_else(|| shown(self.reading, at, self.end))?;
+        let state = state.or_else(|| shown(self.reading, at + length - 1, self.end).and_then(|(_, state, _)| state));
+        // "hit it at a red light", and not "hit it on a red light".
+        let there = !self.struck || (1..4).any(|back| self.before(at, back) == "at");
+        let denied = self.is_none(at) && !self.reading.story.frames[self.number].negated;
+        if denied || !there || is_lamp(self.reading, (at, length)) {
+            return None;
+        }
+        // "awaiting a green light": it is red.
+        let awaited = (1..4).any(|back| self.before(at, back).starts_with("await"))
+            || (2..5).any(|back| self.before(at, back).starts_with("wait") && self.before(at, back - 1) == "for");
+        let state = if awaited && state == Some(SignalState::Green) { Some(SignalState::Red) } else { state };
+        Some((Control { device, state, obeyed: self.obeyed(device, state) }, length))
+    }
+
+    /// "as there is no stop sign", "without a signal", "does not have a light", "only the side street has stop signs".
+    fn is_none(&self, at: usize) -> bool {
+        (1..3).any(|back| matches!(self.before(at, back), "no" | "without"))
+            || (1..4).any(|back| self.before(at, back) == "have" && self.before(at, back + 1) == "not")
+            || self.actor == SUBJECT && is_of_side_street(&self.reading.story.tokens[self.first..at])
+    }
+
+    /// Whether it kept to a light or a sign.
+    fn obeyed(&self, device: ControlDevice, state: Option<SignalState>) -> Option<Obeyed> {
+        let breaks = if device == ControlDevice::Signal { Act::RunRed } else { Act::RunStop };
+        if self.ran == Some(breaks) {
+            return Some(Obeyed::No);
+        }
+        let stops = matches!(self.ran, Some(Act::Stop | Act::Hold)) && state != Some(SignalState::Green);
+        // "was slowing for a red light", and did not go on into the junction.
+        let slows = || {
+            self.ran == Some(Act::Slow)
+                && state == Some(SignalState::Red)
+                && !goes_in(self.reading, self.actor, self.number)
+        };
+        (stops || slows()).then_some(Obeyed::Yes)
+    }
+
+    /// Adds a light or a sign, or what it says more of one that is known.
+    fn add(&self, control: Control, (at, length): (usize, usize), all: &mut Vec<Fact<Control>>) {
+        let Some(known) = all.iter_mut().find(|known| known.value.device == control.device) else {
+            all.push(self.reading.told(control, at, at + length));
+            return;
+        };
+        // "waited at a red light and entered on a green light".
+        let moves = matches!(self.ran, Some(Act::SetOff | Act::Enter | Act::Turn | Act::Follow));
+        let turned = moves && (known.value.state, control.state) == (Some(SignalState::Red), Some(SignalState::Green));
+        known.value.state = if turned { Some(SignalState::TurnedGreen) } else { known.value.state.or(control.state) };
+        let broken = control.obeyed == Some(Obeyed::No);
+        known.value.obeyed = if broken { Some(Obeyed::No) } else { known.value.obeyed.or(control.obeyed) };
+    }
 }
 
 /// "a truck with a broken stop light", "the stop light of a van": a lamp of that.
@@ -377,62 +418,10 @@ pub(super) fn shown(
     at: usize,
     end: usize,
 ) -> Option<(ControlDevice, Option<SignalState>, usize)> {
-    const BETWEEN: [&str; 35] = [
-        "av",
-        "being",
-        "now",
-        "was",
-        "is",
-        "which",
-        "that",
-        "had",
-        "been",
-        "were",
-        ",",
-        "showed",
-        "showing",
-        "shows",
-        "show",
-        "displaying",
-        "displayed",
-        "flashing",
-        "solid",
-        "steady",
-        "still",
-        "facing",
-        "it",
-        "its",
-        "way",
-        "for",
-        "them",
-        "then",
-        "at",
-        "the",
-        "time",
-        "a",
-        "stayed",
-        "remained",
-        "burning",
-    ];
     let tokens = &reading.story.tokens;
     let word = |at: usize| tokens.get(at).map_or("", |token| token.text.as_str());
     let before = at.checked_sub(1).map_or("", word);
-    // "its brake light", "a walk signal", "the van's turn signal", "the light of the cross street".
-    let other = matches!(
-        before,
-        "walk"
-            | "pedestrian"
-            | "crosswalk"
-            | "brake"
-            | "tail"
-            | "turn"
-            | "warning"
-            | "hazard"
-            | "'s"
-            | "head"
-            | "cross"
-    );
-    if !matches!(word(at), "light" | "signal" | "lights" | "signals") || other {
+    if !matches!(word(at), "light" | "signal" | "lights" | "signals") || OTHER_LIGHTS.contains(&before) {
         return None;
     }
     // "the light at Birch Street was red".
@@ -444,7 +433,7 @@ pub(super) fn shown(
                 "street" | "avenue" | "road" | "drive" | "boulevard" | "ahead" | "there" | "on" | "of"
             )
     };
-    let colour = (at + 1..end.min(at + COLOUR_WITHIN)).find(|&at| !BETWEEN.contains(&word(at)) && !street(at))?;
+    let colour = (at + 1..end.min(at + COLOUR_WITHIN)).find(|&at| !BEFORE_COLOUR.contains(&word(at)) && !street(at))?;
     let state = match word(colour) {
         "red" => SignalState::Red,
         "green" => SignalState::Green,
@@ -457,6 +446,49 @@ pub(super) fn shown(
     let plain = colour > at + 1 && !matches!(word(colour - 1), "a" | "the") && !of_cross;
     plain.then_some((ControlDevice::Signal, Some(state), colour + 1 - at))
 }
+
+/// Words between a light and its colour: "the signal, which was flashing red".
+const BEFORE_COLOUR: [&str; 35] = [
+    "av",
+    "being",
+    "now",
+    "was",
+    "is",
+    "which",
+    "that",
+    "had",
+    "been",
+    "were",
+    ",",
+    "showed",
+    "showing",
+    "shows",
+    "show",
+    "displaying",
+    "displayed",
+    "flashing",
+    "solid",
+    "steady",
+    "still",
+    "facing",
+    "it",
+    "its",
+    "way",
+    "for",
+    "them",
+    "then",
+    "at",
+    "the",
+    "time",
+    "a",
+    "stayed",
+    "remained",
+    "burning",
+];
+
+/// Words before a light that is none of the road: "its brake light", "a walk signal", "the van's turn signal", "the light of the cross street".
+const OTHER_LIGHTS: [&str; 11] =
+    ["walk", "pedestrian", "crosswalk", "brake", "tail", "turn", "warning", "hazard", "'s", "head", "cross"];
 
 /// The colour of a light stands so near behind it. [tokens]
 const COLOUR_WITHIN: usize = 10;

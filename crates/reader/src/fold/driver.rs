@@ -4,89 +4,47 @@ use super::Reading;
 use super::contact::tells_harm;
 use crate::frame::{Frame, Story};
 use crate::lexicon::{Lexicon, Occupant, Sense};
-use crate::token::Token;
+use crate::token::{Sentence, Token};
 use crate::world::SUBJECT;
 use recrash_model::account::{Act, Driver, Fact};
 use recrash_model::record::{Coded, Engagement};
 
 /// Who drove at the contact.
 pub(super) fn driver(reading: &Reading<'_>) -> Option<Fact<Driver>> {
-    let lexicon = Lexicon::get();
     let story = &reading.story;
-    // The crash is told first as a headline, and then again after what led to it.
-    let early = story.standing.iter().position(|standing| !standing);
-    let headline = reading.contacts.first.is_some_and(|first| Some(story.frames[first].sentence) == early);
-    // Or without the parts that met, and again with them.
-    let bare = reading.contacts.first.is_some_and(|first| {
-        let frame = &story.frames[first];
-        frame.on.is_none() && frame.with.is_none()
-    });
-    let told_again = |number: usize| {
-        (headline || bare)
-            && story.frames[number + 1..].iter().any(|frame| {
-                frame.is_contact()
-                    && !frame.looks_back
-                    && !frame.aside
-                    && (headline || frame.on.is_some() || frame.with.is_some())
-                    && [frame.who, frame.object].contains(&Some(SUBJECT))
-            })
-    };
-    let took_over = story.frames.iter().enumerate().find(|(number, frame)| {
-        frame.sense == Sense::TakeOver
-            && frame.happened()
-            && frame.who.is_none_or(|who| who == SUBJECT)
-            && (!reading.is_after(*number) || told_again(*number) || had_done(reading, frame))
-    });
-    // "Autonomy had been active within the 30 seconds before", told further on.
-    let later = |from: usize| {
-        let rest = story.sentences.iter().filter(|sentence| sentence.first >= from);
-        rest.take(2).any(|sentence| just_before(&story.tokens[sentence.first..sentence.end]))
-    };
-    let mut system = None;
-    let mut human = None;
-    let mut handed_over = false;
+    let took_over = story.frames.iter().enumerate().find(|(number, frame)| takes_over(reading, *number, frame));
+    let mut said = Said::default();
     for sentence in &story.sentences {
         let words = &story.tokens[sentence.first..sentence.end];
-        let at_impact = at_impact(words);
-        let in_time_before =
-            words.iter().any(|token| matches!(token.text.as_str(), "30" | "seconds" | "prior" | "within"));
-        handed_over |= just_before(words);
+        said.handed_over |= just_before(words);
         if let Some(at) = by_hand_for(words) {
             return Some(reading.told(Driver::HumanTookOver, sentence.first + at, sentence.first + at + 3));
         }
-        let said_human = lexicon.human(words).map(|(at, length)| (Driver::Human, sentence.first + at, length));
-        let said_human = said_human.filter(|(_, at, _)| !of_another(story, *at));
-        let said_system = lexicon.system(words).map(|(at, length)| (Driver::System, sentence.first + at, length));
-        let said_then = said_human.filter(|_| at_the_time(words));
-        if let Some((value, at, length)) = said_human.or(said_system).filter(|_| at_impact).or(said_then) {
-            let until = handed_over
-                || words
-                    .iter()
-                    .any(|token| matches!(token.text.as_str(), "disengaged" | "longer" | "switched" | "off"));
-            let human = value == Driver::Human && (took_over.is_some() || until || later(sentence.end));
-            let value = if human { Driver::HumanTookOver } else { value };
+        let (human, system) = named(story, *sentence);
+        let at_crash = human.or(system).filter(|_| at_impact(words)).or(human.filter(|_| at_the_time(words)));
+        if let Some((value, at, length)) = at_crash {
+            let by_then = || said.handed_over || took_over.is_some() || ends_autonomy(words) || later(story, *sentence);
+            let value = if value == Driver::Human && by_then() { Driver::HumanTookOver } else { value };
             return Some(reading.told(value, at, at + length));
         }
+        let in_time_before = has_any(words, &["30", "seconds", "prior", "within"]);
         if !in_time_before && !sentence_after(reading, sentence.first) {
-            human = human.or(said_human.filter(|_| {
-                !words.iter().any(|token| {
-                    matches!(token.text.as_str(), "transitioned" | "disengaged" | "switched" | "transition")
-                })
-            }));
-            system = system.or(said_system);
+            let changes = has_any(words, &["transitioned", "disengaged", "switched", "transition"]);
+            said.human = said.human.or(human.filter(|_| !changes));
+            said.system = said.system.or(system);
         }
     }
     if let Some((_, frame)) = took_over {
         return Some(Fact { value: Driver::HumanTookOver, source: reading.of(frame) });
     }
     // Driven by hand, and by the system within the half minute before.
-    if let Some((_, at, length)) = human.filter(|_| handed_over) {
+    if let Some((_, at, length)) = said.human.filter(|_| said.handed_over) {
         return Some(reading.told(Driver::HumanTookOver, at, at + length));
     }
-    if let (None, Some(frame)) = (&human, by_hand(reading)) {
+    if let (None, Some(frame)) = (&said.human, by_hand(reading)) {
         return Some(Fact { value: Driver::HumanTookOver, source: reading.of(frame) });
     }
-    if let Some((value, at, length)) = human.or(system) {
+    if let Some((value, at, length)) = said.human.or(said.system) {
         return Some(reading.told(value, at, at + length));
     }
     match reading.record.engagement {
@@ -96,6 +54,68 @@ pub(super) fn driver(reading: &Reading<'_>) -> Option<Fact<Driver>> {
         Coded::Known(Engagement::NotEngaged) => Some(Fact::of_column(Driver::Human, "Engagement Status")),
         _ => None,
     }
+}
+
+/// Who is said to drive, with the first token that says so, and their count.
+type Named = (Driver, usize, usize);
+
+/// What the sentences say that tell of no moment.
+#[derive(Default)]
+struct Said {
+    human: Option<Named>,
+    system: Option<Named>,
+    /// The system drove, or handed over, in the half minute before.
+    handed_over: bool,
+}
+
+/// Whether a sentence says that a human drove, and that the system did.
+fn named(story: &Story, sentence: Sentence) -> (Option<Named>, Option<Named>) {
+    let lexicon = Lexicon::get();
+    let words = &story.tokens[sentence.first..sentence.end];
+    let human = lexicon.human(words).map(|(at, length)| (Driver::Human, sentence.first + at, length));
+    let system = lexicon.system(words).map(|(at, length)| (Driver::System, sentence.first + at, length));
+    (human.filter(|(_, at, _)| !of_another(story, *at)), system)
+}
+
+/// Whether one of some words stands here.
+fn has_any(words: &[Token], wanted: &[&str]) -> bool {
+    words.iter().any(|token| wanted.contains(&token.text.as_str()))
+}
+
+/// "was disengaged at the time", "no longer in autonomous mode": the system drove until then.
+fn ends_autonomy(words: &[Token]) -> bool {
+    has_any(words, &["disengaged", "longer", "switched", "off"])
+}
+
+/// "Autonomy had been active within the 30 seconds before", told in one of the two sentences behind.
+fn later(story: &Story, sentence: Sentence) -> bool {
+    let rest = story.sentences.iter().filter(|other| other.first >= sentence.end);
+    rest.take(2).any(|other| just_before(&story.tokens[other.first..other.end]))
+}
+
+/// Whether a human took the subject vehicle over before the contact.
+fn takes_over(reading: &Reading<'_>, number: usize, frame: &Frame) -> bool {
+    frame.sense == Sense::TakeOver
+        && frame.happened()
+        && frame.who.is_none_or(|who| who == SUBJECT)
+        && (!reading.is_after(number) || is_told_again(reading, number) || had_done(reading, frame))
+}
+
+/// Whether the contact is told once more behind this frame: in full, where it was told first as a headline, or without the parts that met.
+fn is_told_again(reading: &Reading<'_>, number: usize) -> bool {
+    let story = &reading.story;
+    let Some(first) = reading.contacts.first.map(|first| &story.frames[first]) else { return false };
+    let early = story.standing.iter().position(|standing| !standing);
+    let headline = Some(first.sentence) == early;
+    let bare = first.on.is_none() && first.with.is_none();
+    let again = |frame: &Frame| {
+        frame.is_contact()
+            && !frame.looks_back
+            && !frame.aside
+            && (headline || frame.on.is_some() || frame.with.is_some())
+            && [frame.who, frame.object].contains(&Some(SUBJECT))
+    };
+    (headline || bare) && story.frames[number + 1..].iter().any(again)
 }
 
 /// Whether a sentence tells of the moment of the crash: "At impact", "by the time of the contact".
@@ -163,7 +183,7 @@ fn by_hand<'a>(reading: &'a Reading<'_>) -> Option<&'a Frame> {
 /// Whether a sentence says that the system drove, or handed over, in the half minute before: "autonomy was engaged within the
 /// 30 second period".
 fn just_before(words: &[Token]) -> bool {
-    let any = |wanted: &[&str]| words.iter().any(|token| wanted.contains(&token.text.as_str()));
+    let any = |wanted: &[&str]| has_any(words, wanted);
     any(&["second", "seconds"])
         && any(&["within", "prior", "before", "earlier", "less", "during", "in"])
         && any(&["autonomy", "disengaged", "autonomous", "autonomously", "engaged"])
@@ -172,7 +192,7 @@ fn just_before(words: &[Token]) -> bool {
 
 /// Where a sentence says "in manual mode for approximately 10 seconds prior": the system drove until then.
 fn by_hand_for(words: &[Token]) -> Option<usize> {
-    let any = |wanted: &[&str]| words.iter().any(|token| wanted.contains(&token.text.as_str()));
+    let any = |wanted: &[&str]| has_any(words, wanted);
     let at =
         words.windows(3).position(|run| run[0].text == "manual" && run[1].text == "mode" && run[2].text == "for")?;
     (any(&["seconds"]) && any(&["prior", "before"])).then_some(at)

@@ -8,6 +8,7 @@ mod astride;
 mod begun;
 mod contact;
 mod controls;
+mod counted;
 mod driver;
 mod entry;
 mod flashback;
@@ -23,6 +24,7 @@ mod origin;
 mod party;
 mod picture;
 mod place;
+mod reasons;
 mod role;
 mod scenario;
 mod sides;
@@ -331,34 +333,7 @@ pub fn account(incident: &Incident) -> Option<Account> {
     let back = flashback::told_back(&story, &contacts);
     let reading = Reading { text, record, story, contacts, back };
     let own_rider = hurts_its_own_rider(&reading);
-    let mut account = Account {
-        format: ACCOUNT_FORMAT.to_owned(),
-        incident: incident.id.clone(),
-        report: record.id.clone(),
-        reports: incident.references(),
-        text_hash: report.text_hash.clone(),
-        words: words_of(&reading.story),
-        crash_type: None,
-        role: None,
-        striker: None,
-        scenario: None,
-        matrix: None,
-        first_contact: None,
-        place: place::place(&reading),
-        sv: party::party(&reading, SUBJECT),
-        partner: reading.contacts.partner.filter(|_| !own_rider).map(|actor| party::party(&reading, actor)),
-        came_from: None,
-        ahead: None,
-        order: None,
-        driver: driver::driver(&reading),
-        others: others(&reading),
-        door: door(&reading),
-        injury: injury(&reading),
-        damage: None,
-        partner_left: left(&reading),
-        contradictions: Vec::new(),
-        author: Author::Rules,
-    };
+    let mut account = drafted(&reading, incident, &report.text_hash, own_rider);
     if let Some(partner) = &mut account.partner {
         across::settle(&reading, &mut account.sv, partner);
     }
@@ -376,17 +351,7 @@ pub fn account(incident: &Incident) -> Option<Account> {
     }
     along_the_sidewalk(&mut account);
     movement::movements(&reading, &mut account);
-    if let Some(origin) = picture::settle(&account) {
-        if let Some(told) = account.came_from.take().filter(|told| told.source.is_told()) {
-            account.contradictions.push(Contradiction {
-                about: "came_from".to_owned(),
-                kept: format!("{}, by zones and movements", origin.value.words()),
-                against: format!("{} in words", told.value.words()),
-            });
-        }
-        account.came_from = Some(origin);
-        movement::movements(&reading, &mut account);
-    }
+    hold_against_picture(&reading, &mut account);
     acts::move_away(&mut account);
     account.ahead = origin::ahead(&reading, &account);
     account.striker = striker::striker(&reading, &account);
@@ -402,6 +367,52 @@ pub fn account(incident: &Incident) -> Option<Account> {
         party::refine(&mut partner.zones, &record.cp_zones, "CP Contact Area");
     }
     Some(account)
+}
+
+/// The account as far as the words tell it by themselves.
+fn drafted(reading: &Reading<'_>, incident: &Incident, text_hash: &str, own_rider: bool) -> Account {
+    Account {
+        format: ACCOUNT_FORMAT.to_owned(),
+        incident: incident.id.clone(),
+        report: reading.record.id.clone(),
+        reports: incident.references(),
+        text_hash: text_hash.to_owned(),
+        words: words_of(&reading.story),
+        crash_type: None,
+        role: None,
+        striker: None,
+        scenario: None,
+        matrix: None,
+        first_contact: None,
+        place: place::place(reading),
+        sv: party::party(reading, SUBJECT),
+        partner: reading.contacts.partner.filter(|_| !own_rider).map(|actor| party::party(reading, actor)),
+        came_from: None,
+        ahead: None,
+        order: None,
+        driver: driver::driver(reading),
+        others: others(reading),
+        door: door(reading),
+        injury: injury(reading),
+        damage: None,
+        partner_left: left(reading),
+        contradictions: Vec::new(),
+        author: Author::Rules,
+    }
+}
+
+/// Another origin where that of the words makes an impossible picture of zones and movements.
+fn hold_against_picture(reading: &Reading<'_>, account: &mut Account) {
+    let Some(origin) = picture::settle(account) else { return };
+    if let Some(told) = account.came_from.take().filter(|told| told.source.is_told()) {
+        account.contradictions.push(Contradiction {
+            about: "came_from".to_owned(),
+            kept: format!("{}, by zones and movements", origin.value.words()),
+            against: format!("{} in words", told.value.words()),
+        });
+    }
+    account.came_from = Some(origin);
+    movement::movements(reading, account);
 }
 
 /// A record without what its columns tell of the contact.

@@ -313,91 +313,18 @@ fn words(source: &Source) -> String {
     }
 }
 
+/// Movement of one side: of its state at the contact, of what it did last that says most, or of the column.
 fn movement(reading: &Reading<'_>, party: &Party, column: Option<Movement>, name: &str) -> Option<Fact<Movement>> {
-    // "changed lanes as it approached": at the same time, in the sentence of the contact.
-    let frame_of = |fact: &ActFact| reading.story.frames.get(fact.step as usize);
-    let contact = reading.contacts.first.map(|number| reading.story.frames[number].sentence);
-    let meanwhile = |fact: &ActFact| {
-        let changes = party.acts.iter().rev().find(|other| other.act == Act::LaneChange && other.step < fact.step);
-        frame_of(fact).zip(changes.and_then(frame_of)).is_some_and(|(near, change)| {
-            near.joint == Some(Joint::While)
-                && near.clause > change.clause
-                && contact == Some(near.sentence)
-                && near.sentence == change.sentence
-        })
-    };
     if let (Some(ContactState::Reversing), Some(Movement::ParkingManeuver)) = (told(&party.state), column) {
         return Some(Fact::of_column(Movement::ParkingManeuver, name));
     }
-    if let Some(state) = &party.state {
-        let value = match state.value {
-            ContactState::Stopped => Some(Movement::Stopped),
-            ContactState::Parked => Some(Movement::Parked),
-            ContactState::Reversing => Some(Movement::Backing),
-            _ => None,
-        };
-        if let Some(value) = value {
-            return Some(Fact { value, source: state.source.clone() });
-        }
+    if let Some(of_state) = of_state(party) {
+        return Some(of_state);
     }
-    let before = || party.acts.iter().filter(|fact| !fact.after_contact);
+    let course = Course { reading, party, column };
     let mut best: Option<(u8, Movement, &Source)> = None;
-    for fact in before() {
-        // Who goes on from a stop has done with going backwards; who "reversing, approached" it has not.
-        if matches!(fact.act, Act::SetOff | Act::Follow)
-            && !words_of(fact).starts_with("approach")
-            && best.as_ref().is_some_and(|(_, known, _)| *known == Movement::Backing)
-        {
-            best = None;
-        }
-        // Who passes has done with going backwards, who turns where the column says so, and who drives on with its turn.
-        let turns = fact.act == Act::Turn && matches!(column, Some(Movement::LeftTurn | Movement::RightTurn));
-        if (turns || matches!(fact.act, Act::Pass | Act::LaneChange))
-            && best.as_ref().is_some_and(|(_, known, _)| *known == Movement::Backing)
-        {
-            best = None;
-        }
-        // "turned left and kept going": with its turn.
-        let keeps_on = frame_of(fact).is_some_and(|frame| {
-            let word = |at: Option<usize>| at.map_or("", |at| reading.story.tokens[at].text.as_str());
-            let on = |word: &str| ["kept", "keep", "continu"].iter().any(|stem| word.starts_with(stem));
-            let turned = |other: &ActFact| other.act == Act::Turn && other.step < fact.step;
-            let turn = party.acts.iter().rev().find(|other| turned(other)).and_then(frame_of);
-            let near = turn.is_some_and(|turn| turn.sentence == frame.sentence);
-            near && (on(word(Some(frame.first))) || on(word(frame.first.checked_sub(1))))
-        });
-        if fact.act == Act::Follow
-            && !keeps_on
-            && best.as_ref().is_some_and(|(_, known, source)| {
-                matches!(known, Movement::LeftTurn | Movement::RightTurn)
-                    && !(words_of(fact).starts_with("approach") && words(source).starts_with("turning"))
-            })
-        {
-            best = None;
-        }
-        // "pulled into the parking lane, then swerved back": it parked no more.
-        if matches!(fact.act, Act::Swerve | Act::PullOut | Act::SetOff | Act::Pass | Act::LaneChange)
-            && best.as_ref().is_some_and(|(_, known, _)| *known == Movement::ParkingManeuver)
-            && column != Some(Movement::ParkingManeuver)
-        {
-            best = None;
-        }
-        // Who came out and then travels along has come out.
-        if fact.act == Act::Follow
-            && column != Some(Movement::EnteringTraffic)
-            && words_of(fact).starts_with("travel")
-            && best.as_ref().is_some_and(|(_, known, _)| *known == Movement::EnteringTraffic)
-        {
-            best = None;
-        }
-        // Who changed lanes and then draws near is in its lane.
-        if fact.act == Act::Follow
-            && words_of(fact).starts_with("approach")
-            && !meanwhile(fact)
-            && best.as_ref().is_some_and(|(_, known, _)| *known == Movement::ChangingLanes)
-        {
-            best = None;
-        }
+    for fact in party.acts.iter().filter(|fact| !fact.after_contact) {
+        best = best.filter(|(_, known, source)| !course.has_done(*known, source, fact));
         let Some((weight, value)) = weight(fact, column) else { continue };
         // The last of those that say as much.
         if best.as_ref().is_none_or(|(known, ..)| weight >= *known) {
@@ -413,6 +340,84 @@ fn movement(reading: &Reading<'_>, party: &Party, column: Option<Movement>, name
         (Some((_, value, source)), _) => Some(Fact { value, source: source.clone() }),
         (None, Some(column)) => Some(Fact::of_column(column, name)),
         _ => None,
+    }
+}
+
+/// Who stood or went backwards at the contact moves so.
+fn of_state(party: &Party) -> Option<Fact<Movement>> {
+    let state = party.state.as_ref()?;
+    let value = match state.value {
+        ContactState::Stopped => Movement::Stopped,
+        ContactState::Parked => Movement::Parked,
+        ContactState::Reversing => Movement::Backing,
+        _ => return None,
+    };
+    Some(Fact { value, source: state.source.clone() })
+}
+
+/// What one side did, one act after the other.
+struct Course<'a> {
+    reading: &'a Reading<'a>,
+    party: &'a Party,
+    column: Option<Movement>,
+}
+
+impl<'a> Course<'a> {
+    fn frame_of(&self, fact: &ActFact) -> Option<&'a Frame> {
+        self.reading.story.frames.get(fact.step as usize)
+    }
+
+    /// Whether who does this next has done with a movement that these words told.
+    fn has_done(&self, movement: Movement, told: &Source, next: &ActFact) -> bool {
+        let column = self.column;
+        let approaches = || words_of(next).starts_with("approach");
+        match (movement, next.act) {
+            // Who goes on from a stop has done with going backwards; who "reversing, approached" it has not.
+            (Movement::Backing, Act::SetOff | Act::Follow) => !approaches(),
+            // So has who passes, and who turns where the column says so.
+            (Movement::Backing, Act::Pass | Act::LaneChange) => true,
+            (Movement::Backing, Act::Turn) => matches!(column, Some(Movement::LeftTurn | Movement::RightTurn)),
+            // Who drives on has done with its turn.
+            (Movement::LeftTurn | Movement::RightTurn, Act::Follow) => {
+                !(self.keeps_on_turning(next) || approaches() && words(told).starts_with("turning"))
+            }
+            // "pulled into the parking lane, then swerved back": it parked no more.
+            (Movement::ParkingManeuver, Act::Swerve | Act::PullOut | Act::SetOff | Act::Pass | Act::LaneChange) => {
+                column != Some(Movement::ParkingManeuver)
+            }
+            // Who came out and then travels along has come out.
+            (Movement::EnteringTraffic, Act::Follow) => {
+                column != Some(Movement::EnteringTraffic) && words_of(next).starts_with("travel")
+            }
+            // Who changed lanes and then draws near is in its lane.
+            (Movement::ChangingLanes, Act::Follow) => approaches() && !self.is_meanwhile(next),
+            _ => false,
+        }
+    }
+
+    /// "turned left and kept going": with its turn.
+    fn keeps_on_turning(&self, next: &ActFact) -> bool {
+        self.frame_of(next).is_some_and(|frame| {
+            let word = |at: Option<usize>| at.map_or("", |at| self.reading.story.tokens[at].text.as_str());
+            let on = |word: &str| ["kept", "keep", "continu"].iter().any(|stem| word.starts_with(stem));
+            let turned = |other: &ActFact| other.act == Act::Turn && other.step < next.step;
+            let turn = self.party.acts.iter().rev().find(|other| turned(other)).and_then(|turn| self.frame_of(turn));
+            let near = turn.is_some_and(|turn| turn.sentence == frame.sentence);
+            near && (on(word(Some(frame.first))) || on(word(frame.first.checked_sub(1))))
+        })
+    }
+
+    /// "changed lanes as it approached": at the same time, in the sentence of the contact.
+    fn is_meanwhile(&self, next: &ActFact) -> bool {
+        let contact = self.reading.contacts.first.map(|number| self.reading.story.frames[number].sentence);
+        let changed = |other: &&ActFact| other.act == Act::LaneChange && other.step < next.step;
+        let change = self.party.acts.iter().rev().find(changed).and_then(|change| self.frame_of(change));
+        self.frame_of(next).zip(change).is_some_and(|(near, change)| {
+            near.joint == Some(Joint::While)
+                && near.clause > change.clause
+                && contact == Some(near.sentence)
+                && near.sentence == change.sentence
+        })
     }
 }
 

@@ -199,11 +199,21 @@ impl Scene<'_> {
 
     /// How it goes with the movements of both and with the road.
     fn moves(&self, way: Way) -> i32 {
+        // Nobody on foot drives in the next lane.
+        let on_foot = told(&self.cp.kind).map(Kind::group) == Some(KindGroup::OnFoot);
+        let crosses = i32::from(on_foot && matches!(way, Way::Cross(_)));
+        self.of_partner(way)
+            + self.of_own(way)
+            + self.of_passing(way)
+            + self.of_one_lane(way)
+            + self.of_road(way)
+            + crosses
+    }
+
+    /// How it goes with the movement of the partner.
+    fn of_partner(&self, way: Way) -> i32 {
         use Movement as M;
-        let group = told(&self.cp.kind).map(Kind::group);
-        let state = told(&self.sv.state);
-        let (sv_backs, sv_stands) = (state == Some(ContactState::Reversing), state.is_some_and(ContactState::stands));
-        let cp = match told(&self.cp.movement) {
+        match told(&self.cp.movement) {
             Some(M::Passing) => match way {
                 Way::Beside(_) => 3,
                 Way::Behind => 2,
@@ -245,7 +255,11 @@ impl Scene<'_> {
             Some(M::Parked) => match way {
                 Way::Beside(_) | Way::Ahead => 1,
                 // Pushed into one that stands, or met by one that backs.
-                Way::Behind if sv_backs || sv_stands => 1,
+                Way::Behind
+                    if told(&self.sv.state).is_some_and(|state| state.stands() || state == ContactState::Reversing) =>
+                {
+                    1
+                }
                 _ => -6,
             },
             Some(M::NmCrossing) => match way {
@@ -254,8 +268,13 @@ impl Scene<'_> {
                 _ => -2,
             },
             _ => 0,
-        };
-        let sv = match told(&self.sv.movement) {
+        }
+    }
+
+    /// How it goes with the movement of the subject vehicle.
+    fn of_own(&self, way: Way) -> i32 {
+        use Movement as M;
+        match told(&self.sv.movement) {
             Some(M::ChangingLanes | M::Merging) => match way {
                 Way::Beside(_) => 2,
                 Way::Behind | Way::Ahead => 0,
@@ -264,32 +283,38 @@ impl Scene<'_> {
             Some(M::LeftTurn) if way == Way::Opposite => 2,
             Some(M::EnteringTraffic) if matches!(way, Way::Cross(_)) => 2,
             _ => 0,
-        };
-        let passed = match way {
-            _ if told(&self.cp.movement) == Some(M::Passing) || !self.cp.did(Act::Pass) => 0,
+        }
+    }
+
+    /// How it goes with a pass that is told, and is not the movement.
+    fn of_passing(&self, way: Way) -> i32 {
+        match way {
+            _ if told(&self.cp.movement) == Some(Movement::Passing) || !self.cp.did(Act::Pass) => 0,
             Way::Behind | Way::Beside(_) => 2,
             Way::Opposite => 0,
             Way::Ahead | Way::Cross(_) => -2,
-        };
-        // In one lane the front of one touches the rear of the other.
+        }
+    }
+
+    /// In one lane the front of one touches the rear of the other.
+    fn of_one_lane(&self, way: Way) -> i32 {
+        use Movement as M;
         let touched = |face: i32| self.cp.zones.iter().any(|zone| faces(zone.value).contains(&face));
         let forward = !matches!(told(&self.cp.movement), Some(M::Backing | M::ParkingManeuver | M::Parked));
-        let lane = match way {
+        match way {
             Way::Ahead if forward && touched(0) && !touched(4) => -3,
             Way::Behind if forward && touched(4) && !touched(0) => -3,
             _ => 0,
-        };
-        let road = match (told(&self.place.kind), way) {
+        }
+    }
+
+    /// How it goes with the road.
+    fn of_road(&self, way: Way) -> i32 {
+        match (told(&self.place.kind), way) {
             (Some(PlaceKind::Highway), Way::Opposite | Way::Cross(_)) => -3,
             (Some(PlaceKind::Intersection | PlaceKind::ParkingLot), Way::Cross(_)) => 1,
             _ => 0,
-        };
-        // Nobody on foot drives in the next lane.
-        let on_foot = match (group, way) {
-            (Some(KindGroup::OnFoot), Way::Cross(_)) => 1,
-            _ => 0,
-        };
-        cp + sv + passed + lane + road + on_foot
+        }
     }
 
     fn weigh(&self, way: Way) -> i32 {
@@ -354,58 +379,66 @@ pub(crate) fn settle(account: &Account) -> Option<Fact<Origin>> {
         return None;
     }
     let scene = Scene { sv: &account.sv, cp, place: &account.place };
-    let now = account.came_from.as_ref();
-    let told_way = now.and_then(|fact| Way::of(fact.value));
-    let prior = match now.map(|fact| &fact.source) {
-        Some(Source::Rule { name }) if name.starts_with("zones") => BY_COLUMNS,
-        Some(Source::Rule { name }) if name.contains("turning vehicle") => BY_TURN,
-        Some(Source::Rule { .. } | Source::Column { .. }) => BY_RULE,
-        _ => TOLD,
-    };
     let (weight, way) = WAYS
         .iter()
         .map(|&way| (scene.weigh(way), way))
         .max_by_key(|(weight, way)| (*weight, std::cmp::Reverse(*way)))?;
-    let Some(told_way) = told_way else {
-        // An origin whose side nobody told gets the side, and stays what it is.
-        return match now.map(|fact| fact.value) {
-            // Left and right that weigh the same are told by nobody.
-            None => {
-                let tie = way.mirrored().is_some_and(|mirrored| scene.weigh(mirrored) == weight);
-                let lane = [Way::Behind, Way::Ahead].into_iter().find(|lane| tie && scene.weigh(*lane) >= UNTOLD);
-                let way = lane.or((weight >= UNTOLD && !tie).then_some(way));
-                way.map(|way| Fact::by_rule(way.origin(), RULE))
-            }
-            Some(origin) => {
-                let left = scene.weigh(Way::Cross(LeftRight::Left)).max(scene.weigh(Way::Beside(LeftRight::Left)));
-                let right = scene.weigh(Way::Cross(LeftRight::Right)).max(scene.weigh(Way::Beside(LeftRight::Right)));
-                let met = turned_towards(&account.sv, cp);
-                let side = match left.cmp(&right) {
-                    _ if met.is_some() => met?.other(),
-                    std::cmp::Ordering::Greater => LeftRight::Left,
-                    std::cmp::Ordering::Less => LeftRight::Right,
-                    std::cmp::Ordering::Equal => return None,
+    let origin = match &account.came_from {
+        None => scene.untold(weight, way)?.origin(),
+        Some(now) => match Way::of(now.value) {
+            None => scene.with_side(now.value)?,
+            Some(told_way) => {
+                // From the kerb is beside and across at once; from behind may mean beside, where it is met.
+                let kin = match (told_way, now.value) {
+                    (Way::Cross(side), Origin::Parked { .. }) => scene.weigh(Way::Beside(side)),
+                    _ => i32::MIN,
                 };
-                let side = Some(side);
-                let value = match origin {
-                    Origin::Stall { .. } => Origin::Stall { side },
-                    Origin::Driveway { .. } => Origin::Driveway { side },
-                    Origin::Parked { .. } => Origin::Parked { side },
-                    Origin::Sidewalk { .. } => Origin::Sidewalk { side },
-                    _ => return None,
-                };
-                Some(Fact::by_rule(value, RULE))
+                let have = scene.weigh(told_way).max(kin) + prior(&now.source);
+                let same_family = matches!((told_way, way), (Way::Behind, Way::Beside(_)));
+                (weight > have && !same_family).then(|| way.origin())?
             }
+        },
+    };
+    Some(Fact::by_rule(origin, RULE))
+}
+
+/// What the source of an origin adds to its weight.
+fn prior(source: &Source) -> i32 {
+    match source {
+        Source::Rule { name } if name.starts_with("zones") => BY_COLUMNS,
+        Source::Rule { name } if name.contains("turning vehicle") => BY_TURN,
+        Source::Rule { .. } | Source::Column { .. } => BY_RULE,
+        _ => TOLD,
+    }
+}
+
+impl Scene<'_> {
+    /// The heaviest way, where nobody tells any; left and right that weigh the same are told by nobody.
+    fn untold(&self, weight: i32, way: Way) -> Option<Way> {
+        let tie = way.mirrored().is_some_and(|mirrored| self.weigh(mirrored) == weight);
+        let lane = [Way::Behind, Way::Ahead].into_iter().find(|lane| tie && self.weigh(*lane) >= UNTOLD);
+        lane.or((weight >= UNTOLD && !tie).then_some(way))
+    }
+
+    /// An origin whose side nobody told gets the side, and stays what it is.
+    fn with_side(&self, origin: Origin) -> Option<Origin> {
+        let left = self.weigh(Way::Cross(LeftRight::Left)).max(self.weigh(Way::Beside(LeftRight::Left)));
+        let right = self.weigh(Way::Cross(LeftRight::Right)).max(self.weigh(Way::Beside(LeftRight::Right)));
+        let side = match (turned_towards(self.sv, self.cp), left.cmp(&right)) {
+            (Some(met), _) => met.other(),
+            (None, std::cmp::Ordering::Greater) => LeftRight::Left,
+            (None, std::cmp::Ordering::Less) => LeftRight::Right,
+            (None, std::cmp::Ordering::Equal) => return None,
         };
-    };
-    // From the kerb is beside and across at once; from behind may mean beside, where it is met.
-    let kin = match (told_way, now.map(|fact| fact.value)) {
-        (Way::Cross(side), Some(Origin::Parked { .. })) => scene.weigh(Way::Beside(side)),
-        _ => i32::MIN,
-    };
-    let have = scene.weigh(told_way).max(kin) + prior;
-    let same_family = matches!((told_way, way), (Way::Behind, Way::Beside(_)));
-    (weight > have && !same_family).then(|| Fact::by_rule(way.origin(), RULE))
+        let side = Some(side);
+        Some(match origin {
+            Origin::Stall { .. } => Origin::Stall { side },
+            Origin::Driveway { .. } => Origin::Driveway { side },
+            Origin::Parked { .. } => Origin::Parked { side },
+            Origin::Sidewalk { .. } => Origin::Sidewalk { side },
+            _ => return None,
+        })
+    }
 }
 
 /// The side of a place out of which one turned that met a standing one with its left on the left: of a turn to the right, the left.

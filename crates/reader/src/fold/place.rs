@@ -13,51 +13,64 @@ const WAYS_IN: [&str; 4] = ["entrance", "entry", "driveway", "gate"];
 
 /// What words and columns tell of the place.
 pub(crate) fn place(reading: &Reading<'_>) -> Place {
-    let lexicon = Lexicon::get();
     let story = &reading.story;
-    let record = reading.record;
     let mut place = Place::default();
     for (number, (sentence, standing)) in story.sentences.iter().zip(&story.standing).enumerate() {
         if *standing || is_after(reading, sentence.first) {
             continue;
         }
-        let words = &story.tokens[sentence.first..sentence.end];
-        for (feature, at, length) in lexicon.features(words) {
-            // "Through a narrow gap between two trucks" tells nothing of the street.
-            let of_gap = feature == RoadFeature::NarrowStreet
-                && words.get(at + length).is_some_and(|next| matches!(next.text.as_str(), "gap" | "space" | "margin"));
-            if !of_gap && !place.features.iter().any(|known| known.value == feature) {
-                place.features.push(reading.told(feature, sentence.first + at, sentence.first + at + length));
-            }
-        }
+        features(reading, &mut place, *sentence);
         kerbs(reading, &mut place, number, *sentence);
         ways_off(reading, &mut place, *sentence);
         at_junctions(reading, &mut place, number, *sentence);
         in_slip_lanes(reading, &mut place, number, *sentence);
-        for (kind, at, length) in lexicon.places(words) {
-            // Somebody turns into it.
-            let way_in = words.get(at + length).is_some_and(|next| WAYS_IN.contains(&next.text.as_str()));
-            // "exited a garage", "turned into a garage", "came to the exit of a garage": there it came from, or went to.
-            let way_out = at > 0
-                && words[at.saturating_sub(4)..at].iter().any(|before| {
-                    matches!(
-                        before.text.as_str(),
-                        "exited" | "exiting" | "exit" | "leaving" | "into" | "out" | "enter" | "entered" | "entrance"
-                    )
-                });
-            let aside = way_in || way_out && matches!(kind, PlaceKind::Garage | PlaceKind::Alley);
-            // "A van traveling in an alley pulled out", "a van driving through a garage", told of one that drives along a street.
-            let of_other = matches!(kind, PlaceKind::Alley | PlaceKind::Garage)
-                && is_told_of_another(reading, number, sentence.first + at);
-            if place.kind.is_none()
-                && !(of_other && column_is_road(reading))
-                && !(aside && matches!(kind, PlaceKind::Garage | PlaceKind::ParkingLot | PlaceKind::Alley))
-            {
-                place.kind = Some(reading.told(kind, sentence.first + at, sentence.first + at + length));
-            }
-        }
+        kind(reading, &mut place, number, *sentence);
         lanes(reading, &mut place, sentence.first, sentence.end);
     }
+    columns(reading, &mut place);
+    place
+}
+
+/// Features of the road that a sentence names.
+fn features(reading: &Reading<'_>, place: &mut Place, sentence: Sentence) {
+    let words = &reading.story.tokens[sentence.first..sentence.end];
+    for (feature, at, length) in Lexicon::get().features(words) {
+        // "Through a narrow gap between two trucks" tells nothing of the street.
+        let of_gap = feature == RoadFeature::NarrowStreet
+            && words.get(at + length).is_some_and(|next| matches!(next.text.as_str(), "gap" | "space" | "margin"));
+        if !of_gap && !place.features.iter().any(|known| known.value == feature) {
+            place.features.push(reading.told(feature, sentence.first + at, sentence.first + at + length));
+        }
+    }
+}
+
+/// The kind of place that a sentence names first, unless somebody only turns into it or comes out of it.
+fn kind(reading: &Reading<'_>, place: &mut Place, number: usize, sentence: Sentence) {
+    let words = &reading.story.tokens[sentence.first..sentence.end];
+    for (kind, at, length) in Lexicon::get().places(words) {
+        // Somebody turns into it.
+        let way_in = words.get(at + length).is_some_and(|next| WAYS_IN.contains(&next.text.as_str()));
+        // "exited a garage", "turned into a garage", "came to the exit of a garage": there it came from, or went to.
+        let way_out = at > 0
+            && words[at.saturating_sub(4)..at].iter().any(|before| {
+                matches!(
+                    before.text.as_str(),
+                    "exited" | "exiting" | "exit" | "leaving" | "into" | "out" | "enter" | "entered" | "entrance"
+                )
+            });
+        let off_street = matches!(kind, PlaceKind::Alley | PlaceKind::Garage);
+        let aside = way_in && (off_street || kind == PlaceKind::ParkingLot) || way_out && off_street;
+        // "A van traveling in an alley pulled out", "a van driving through a garage", told of one that drives along a street.
+        let of_other = off_street && is_told_of_another(reading, number, sentence.first + at);
+        if place.kind.is_none() && !(of_other && column_is_road(reading)) && !aside {
+            place.kind = Some(reading.told(kind, sentence.first + at, sentence.first + at + length));
+        }
+    }
+}
+
+/// What the columns tell of the place.
+fn columns(reading: &Reading<'_>, place: &mut Place) {
+    let record = reading.record;
     let column = record.road.known().map(|road| match road {
         RoadType::Intersection => PlaceKind::Intersection,
         RoadType::TrafficCircle => PlaceKind::Circle,
@@ -78,7 +91,6 @@ pub(crate) fn place(reading: &Reading<'_>) -> Place {
     place.surface = record.surface.map(|surface| Fact::of_column(surface, "Roadway Surface"));
     place.lighting = record.lighting.map(|lighting| Fact::of_column(lighting, "Lighting"));
     place.weather = record.weather.iter().map(|weather| Fact::of_column(*weather, "Weather")).collect();
-    place
 }
 
 /// Whether what stands at this token of a sentence is told of another than the subject vehicle.

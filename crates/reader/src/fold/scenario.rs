@@ -3,7 +3,7 @@
 use super::types::{turn_side, turning};
 use recrash_model::account::{
     Account, Act, ContactState, CrashType, Fact, Kind, KindGroup, LeftRight, MatrixCell, MatrixEvent, MatrixObject,
-    Origin, PrecrashScenario, told,
+    Origin, Party, PrecrashScenario, told,
 };
 
 fn group(account: &Account) -> Option<KindGroup> {
@@ -23,75 +23,80 @@ pub(crate) fn scenario(account: &Account) -> Option<Fact<PrecrashScenario>> {
     let partner = account.partner.as_ref()?;
     let moved = manoeuvre(account);
     let either = |with: S, without: S| if moved { with } else { without };
-    let signal =
-        account.place.features.iter().any(|feature| feature.value == recrash_model::account::RoadFeature::Signal);
-    let ran = |act: Act| partner.did(act) || account.sv.did(act);
-    let lead = if matches!(told(&account.came_from), Some(Origin::Ahead)) { partner } else { &account.sv };
-    let value = match told(&account.crash_type)? {
-        _ if ran(Act::RunRed) => S::RunningRedLight,
-        _ if ran(Act::RunStop) => S::RunningStopSign,
+    let crash_type = told(&account.crash_type)?;
+    let value = match crash_type {
+        _ if either_did(account, partner, Act::RunRed) => S::RunningRedLight,
+        _ if either_did(account, partner, Act::RunStop) => S::RunningStopSign,
         CrashType::Pedestrian => either(S::PedestrianWithManeuver, S::Pedestrian),
         CrashType::Cyclist => either(S::CyclistWithManeuver, S::Cyclist),
         CrashType::SingleVehicle => either(S::ObjectWithManeuver, S::Object),
         CrashType::Backing => S::Backing,
-        CrashType::FrontToRear | CrashType::Secondary | CrashType::Motorcycle => {
-            let following = if matches!(told(&account.came_from), Some(Origin::Ahead)) { &account.sv } else { partner };
-            if told(&account.crash_type) == Some(CrashType::Motorcycle)
-                && !matches!(told(&account.came_from), Some(Origin::Behind | Origin::Ahead))
-            {
-                S::Other
-            } else if following.did(Act::LaneChange) || following.did(Act::Pass) {
-                S::FollowingWithManeuver
-            } else {
-                match told(&lead.state) {
-                    Some(state) if state.stands() => S::LeadStopped,
-                    Some(ContactState::SettingOff) => S::LeadAccelerating,
-                    _ if lead.did(Act::Slow) || lead.did(Act::Stop) => S::LeadDecelerating,
-                    _ => S::LeadSlower,
-                }
-            }
-        }
-        CrashType::HeadOn => {
-            if moved || partner.did(Act::Pass) || partner.did(Act::LaneChange) {
-                S::OppositeWithManeuver
-            } else {
-                S::Opposite
-            }
-        }
-        CrashType::Intersection => {
-            let turn = turn_side(&account.sv).or_else(|| turn_side(partner));
-            match (told(&account.came_from), turn) {
-                (Some(Origin::Opposite), Some(LeftRight::Left)) => {
-                    if signal {
-                        S::LeftTurnOppositeSignal
-                    } else {
-                        S::LeftTurnOpposite
-                    }
-                }
-                (Some(Origin::Beside { .. } | Origin::Behind | Origin::Ahead), Some(_)) => S::TurningSameDirection,
-                (_, Some(LeftRight::Right)) if signal => S::RightTurnSignal,
-                (_, Some(_)) => S::TurningCrossing,
-                _ => S::StraightCrossing,
-            }
-        }
-        CrashType::Lateral => {
-            let both = |act: Act| partner.did(act) || account.sv.did(act);
-            if both(Act::Park) || both(Act::PullOut) {
-                S::ParkingSameDirection
-            } else if both(Act::LaneChange) || both(Act::Pass) {
-                S::ChangingLanesSameDirection
-            } else if turning(&account.sv) || turning(partner) {
-                S::TurningSameDirection
-            } else {
-                S::DriftingSameDirection
-            }
-        }
+        CrashType::FrontToRear | CrashType::Secondary => in_one_lane(account, partner),
+        CrashType::Motorcycle => match told(&account.came_from) {
+            Some(Origin::Behind | Origin::Ahead) => in_one_lane(account, partner),
+            _ => S::Other,
+        },
+        CrashType::HeadOn if moved || partner.did(Act::Pass) || partner.did(Act::LaneChange) => S::OppositeWithManeuver,
+        CrashType::HeadOn => S::Opposite,
+        CrashType::Intersection => at_junction(account, partner),
+        CrashType::Lateral => side_by_side(account, partner),
         CrashType::Other => match group(account) {
             Some(KindGroup::Animal) => either(S::AnimalWithManeuver, S::Animal),
             _ => S::Other,
         },
     };
     Some(Fact::by_rule(value, "crash type, acts and control"))
+}
+
+fn either_did(account: &Account, partner: &Party, act: Act) -> bool {
+    partner.did(act) || account.sv.did(act)
+}
+
+/// One behind the other: by what the one ahead did.
+fn in_one_lane(account: &Account, partner: &Party) -> PrecrashScenario {
+    use PrecrashScenario as S;
+    let ahead = matches!(told(&account.came_from), Some(Origin::Ahead));
+    let (lead, following) = if ahead { (partner, &account.sv) } else { (&account.sv, partner) };
+    if following.did(Act::LaneChange) || following.did(Act::Pass) {
+        return S::FollowingWithManeuver;
+    }
+    match told(&lead.state) {
+        Some(state) if state.stands() => S::LeadStopped,
+        Some(ContactState::SettingOff) => S::LeadAccelerating,
+        _ if lead.did(Act::Slow) || lead.did(Act::Stop) => S::LeadDecelerating,
+        _ => S::LeadSlower,
+    }
+}
+
+/// At a junction: by who turned to where.
+fn at_junction(account: &Account, partner: &Party) -> PrecrashScenario {
+    use PrecrashScenario as S;
+    let signal =
+        account.place.features.iter().any(|feature| feature.value == recrash_model::account::RoadFeature::Signal);
+    let turn = turn_side(&account.sv).or_else(|| turn_side(partner));
+    match (told(&account.came_from), turn) {
+        (Some(Origin::Opposite), Some(LeftRight::Left)) if signal => S::LeftTurnOppositeSignal,
+        (Some(Origin::Opposite), Some(LeftRight::Left)) => S::LeftTurnOpposite,
+        (Some(Origin::Beside { .. } | Origin::Behind | Origin::Ahead), Some(_)) => S::TurningSameDirection,
+        (_, Some(LeftRight::Right)) if signal => S::RightTurnSignal,
+        (_, Some(_)) => S::TurningCrossing,
+        _ => S::StraightCrossing,
+    }
+}
+
+/// Side by side: by what either did.
+fn side_by_side(account: &Account, partner: &Party) -> PrecrashScenario {
+    use PrecrashScenario as S;
+    let did = |act: Act| either_did(account, partner, act);
+    if did(Act::Park) || did(Act::PullOut) {
+        S::ParkingSameDirection
+    } else if did(Act::LaneChange) || did(Act::Pass) {
+        S::ChangingLanesSameDirection
+    } else if turning(&account.sv) || turning(partner) {
+        S::TurningSameDirection
+    } else {
+        S::DriftingSameDirection
+    }
 }
 
 /// Cell of the matrix of EU 2022/1426; what comes from behind has none.

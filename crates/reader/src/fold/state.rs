@@ -1,6 +1,6 @@
 //! State of the subject vehicle at the contact: the words held against the column speed and the movement column.
 
-use super::standing::reasons;
+use super::reasons::reasons;
 use super::{Reading, nominal};
 use crate::frame::Frame;
 use crate::lexicon::{Form, Sense};
@@ -12,104 +12,8 @@ use recrash_model::template::Movement;
 
 /// State of the subject vehicle: the words, the column speed and the movement column, which each know a part of it.
 pub(super) fn sv_state(reading: &Reading<'_>, account: &mut Account) {
-    let record = reading.record;
-    let column = record.sv_movement.known();
-    let words = told(&account.sv.state);
-    let stopping = told(&account.sv.standing) == Some(Standing::Stopping);
-    let to_stop = slowed_to_stop(reading);
-    let stopping = stopping || to_stop;
-    let rolls = record.sv_speed_mps.is_some_and(|speed| speed > if stopping { 0.3 } else { 0.6 });
-    // "accelerated up to 10 mph, then stopped": the column speed is that of before.
-    let rolls = rolls && !(column == Some(Movement::Stopped) && was_told_before(account));
-    let drives = record.sv_speed_mps.is_some_and(|speed| speed >= DRIVES_MPS);
-    let zero = record.sv_speed_mps.is_some_and(|speed| speed < 0.1);
-    let yields = yields_last(reading) && record.sv_speed_mps.is_none() && !told_speed(account, |mps| mps > 0.0);
-    let value = match (words, column) {
-        // In the lane, for passengers.
-        (Some(ContactState::Parked), Some(Movement::Stopped))
-            if account.sv.reasons.iter().any(|reason| reason.value == StandReason::PickupDropoff) =>
-        {
-            Some(ContactState::Stopped)
-        }
-        // "came to a stop to yield to a truck": in its lane, whatever the column calls it.
-        (Some(ContactState::Stopped), Some(Movement::Parked)) if waits_in_traffic(account) => None,
-        (Some(ContactState::Stopped), Some(Movement::Parked)) => Some(ContactState::Parked),
-        (None, Some(Movement::Parked)) => Some(ContactState::Parked),
-        (None, Some(Movement::Stopped)) => Some(ContactState::Stopped),
-        (None, Some(Movement::Backing)) => Some(ContactState::Reversing),
-        (None, _) if zero => Some(ContactState::Stopped),
-        (None, Some(_)) => Some(ContactState::Moving),
-        (None, None) if rolls || moves_at_contact(reading) => Some(ContactState::Moving),
-        // "was struck while stopping for a light", and no number says more.
-        (Some(ContactState::Stopped), None | Some(Movement::Straight))
-            if stopping && record.sv_speed_mps.is_none() && stops_at_contact(reading) =>
-        {
-            Some(ContactState::Moving)
-        }
-        // "was coming to a stop when a van struck it": the column tells what it was about.
-        (Some(ContactState::Stopped), None | Some(Movement::Straight | Movement::Stopped))
-            if stopping
-                && record.sv_speed_mps.is_none()
-                && !told_speed(account, |mps| mps == 0.0)
-                && (is_stopping_when(reading) || moves_at_contact(reading)) =>
-        {
-            Some(ContactState::Moving)
-        }
-        // "was operating in autonomous mode, yielding to traffic, when a van struck it", and by the column it stood.
-        (Some(ContactState::Moving), Some(Movement::Stopped)) if yields && !moves_at_contact(reading) => {
-            Some(ContactState::Stopped)
-        }
-        // It moved into something, and backwards by the column.
-        (Some(state), Some(Movement::Backing)) if state != ContactState::Reversing && moves_at_contact(reading) => {
-            Some(ContactState::Reversing)
-        }
-        // Slowing in words, standing in numbers: it had come to stand.
-        // Told to come to a stop, and still rolling in numbers.
-        (Some(ContactState::Stopped), _)
-            if rolls
-                && (stopping || moves_at_contact(reading))
-                && !account.sv.acts.iter().any(|fact| fact.act == Act::Hold && !fact.after_contact) =>
-        {
-            Some(ContactState::Moving)
-        }
-        // It moved into something.
-        (Some(ContactState::Stopped), Some(movement))
-            if rolls && moves_at_contact(reading) && movement != Movement::Stopped =>
-        {
-            Some(ContactState::Moving)
-        }
-        // It stopped, drove on, and both columns say so.
-        (Some(ContactState::Stopped), Some(movement))
-            if drives && !matches!(movement, Movement::Stopped | Movement::Parked) && !holds_at_contact(reading) =>
-        {
-            Some(ContactState::Moving)
-        }
-        // "As it set off, a van struck it" is plain.
-        (Some(ContactState::SettingOff), Some(Movement::Stopped | Movement::Parked))
-            if zero && !moves_at_contact(reading) && !sets_off_at_contact(reading) =>
-        {
-            Some(ContactState::Stopped)
-        }
-        // "had pulled over", and no number says more.
-        (Some(ContactState::Moving), Some(Movement::Stopped | Movement::Parked))
-            if record.sv_speed_mps.is_none()
-                && !moves_at_contact(reading)
-                && account
-                    .sv
-                    .acts
-                    .iter()
-                    .rfind(|fact| !fact.after_contact)
-                    .is_some_and(|fact| matches!(fact.act, Act::PullOver | Act::Park)) =>
-        {
-            Some(if column == Some(Movement::Parked) { ContactState::Parked } else { ContactState::Stopped })
-        }
-        (Some(ContactState::Moving), Some(Movement::Stopped | Movement::Parked))
-            if zero && !moves_at_contact(reading) && !turns_meanwhile(reading) =>
-        {
-            Some(ContactState::Stopped)
-        }
-        _ => None,
-    };
+    let clues = Clues::of(reading, account);
+    let (value, words, zero, yields, to_stop) = (clues.state(), clues.words, clues.zero, clues.yields, clues.to_stop);
     if let (true, Some(ContactState::Moving)) = (to_stop, value) {
         slow_only(account);
     }
@@ -133,6 +37,138 @@ pub(super) fn sv_state(reading: &Reading<'_>, account: &mut Account) {
     }
     if told(&account.sv.state) == Some(ContactState::Parked) && account.sv.reasons.is_empty() {
         account.sv.reasons.push(Fact::by_rule(StandReason::Parked, "it was parked"));
+    }
+}
+
+/// What words and columns tell of the state of the subject vehicle.
+struct Clues<'a> {
+    reading: &'a Reading<'a>,
+    account: &'a Account,
+    /// The state as the words tell it.
+    words: Option<ContactState>,
+    /// The movement column.
+    column: Option<Movement>,
+    /// The column speed is blank.
+    no_speed: bool,
+    /// The column speed is none.
+    zero: bool,
+    /// It rolls, by the column speed.
+    rolls: bool,
+    /// It "slowed to stop", by the words: a purpose.
+    to_stop: bool,
+    /// It was coming to a stop, by the words.
+    stopping: bool,
+    /// It was yielding, by the words, and no number says that it moved.
+    yields: bool,
+    /// It moved into something, by the words of the contact.
+    moves: bool,
+}
+
+impl<'a> Clues<'a> {
+    fn of(reading: &'a Reading<'_>, account: &'a Account) -> Self {
+        let speed = reading.record.sv_speed_mps;
+        let column = reading.record.sv_movement.known();
+        let to_stop = slowed_to_stop(reading);
+        let stopping = told(&account.sv.standing) == Some(Standing::Stopping) || to_stop;
+        let rolls = speed.is_some_and(|speed| speed > if stopping { 0.3 } else { 0.6 });
+        Self {
+            reading,
+            account,
+            words: told(&account.sv.state),
+            column,
+            no_speed: speed.is_none(),
+            zero: speed.is_some_and(|speed| speed < 0.1),
+            // "accelerated up to 10 mph, then stopped": the column speed is that of before.
+            rolls: rolls && !(column == Some(Movement::Stopped) && was_told_before(account)),
+            to_stop,
+            stopping,
+            yields: speed.is_none() && yields_last(reading) && !told_speed(account, |mps| mps > 0.0),
+            moves: moves_at_contact(reading),
+        }
+    }
+
+    /// The state, where the columns know it better than the words.
+    fn state(&self) -> Option<ContactState> {
+        let stands_by_column = matches!(self.column, Some(Movement::Stopped | Movement::Parked));
+        let Some(words) = self.words else { return self.untold() };
+        match words {
+            // It moved into something, and backwards by the column.
+            _ if words != ContactState::Reversing && self.moves && self.column == Some(Movement::Backing) => {
+                Some(ContactState::Reversing)
+            }
+            // In the lane, for passengers.
+            ContactState::Parked => {
+                let riders = self.account.sv.reasons.iter().any(|why| why.value == StandReason::PickupDropoff);
+                (riders && self.column == Some(Movement::Stopped)).then_some(ContactState::Stopped)
+            }
+            // "came to a stop to yield to a truck": in its lane, whatever the column calls it.
+            ContactState::Stopped if self.column == Some(Movement::Parked) => {
+                (!waits_in_traffic(self.account)).then_some(ContactState::Parked)
+            }
+            ContactState::Stopped => (self.had_yet_to_stop() || self.had_gone_on()).then_some(ContactState::Moving),
+            // "As it set off, a van struck it" is plain.
+            ContactState::SettingOff => {
+                let stood = stands_by_column && self.zero && !self.moves && !sets_off_at_contact(self.reading);
+                stood.then_some(ContactState::Stopped)
+            }
+            ContactState::Moving if stands_by_column && !self.moves => self.had_come_to_stand(),
+            ContactState::Moving | ContactState::Reversing => None,
+        }
+    }
+
+    /// The columns alone.
+    fn untold(&self) -> Option<ContactState> {
+        match self.column {
+            Some(Movement::Parked) => Some(ContactState::Parked),
+            Some(Movement::Stopped) => Some(ContactState::Stopped),
+            Some(Movement::Backing) => Some(ContactState::Reversing),
+            _ if self.zero => Some(ContactState::Stopped),
+            Some(_) => Some(ContactState::Moving),
+            None => (self.rolls || self.moves).then_some(ContactState::Moving),
+        }
+    }
+
+    /// Told to come to a stop, it was on its way to that.
+    fn had_yet_to_stop(&self) -> bool {
+        let unknown = self.stopping && self.no_speed;
+        match self.column {
+            // "was struck while stopping for a light", and no number says more.
+            None | Some(Movement::Straight) if unknown && stops_at_contact(self.reading) => true,
+            // "was coming to a stop when a van struck it": the column tells what it was about.
+            None | Some(Movement::Straight | Movement::Stopped) if unknown => {
+                !told_speed(self.account, |mps| mps == 0.0) && (is_stopping_when(self.reading) || self.moves)
+            }
+            _ => false,
+        }
+    }
+
+    /// Told to stand, it rolled or drove in numbers.
+    fn had_gone_on(&self) -> bool {
+        let held = || self.account.sv.acts.iter().any(|fact| fact.act == Act::Hold && !fact.after_contact);
+        let drives = self.reading.record.sv_speed_mps.is_some_and(|speed| speed >= DRIVES_MPS);
+        let column = self.column.filter(|movement| *movement != Movement::Stopped);
+        // Told to come to a stop, and still rolling in numbers.
+        self.rolls && (self.stopping || self.moves) && !held()
+            // It moved into something.
+            || self.rolls && self.moves && column.is_some()
+            // It stopped, drove on, and both columns say so.
+            || drives && column.is_some_and(|movement| movement != Movement::Parked) && !holds_at_contact(self.reading)
+    }
+
+    /// Told to move, and standing by the column: it had come to that.
+    fn had_come_to_stand(&self) -> Option<ContactState> {
+        // "was operating in autonomous mode, yielding to traffic, when a van struck it", and by the column it stood.
+        if self.yields && self.column == Some(Movement::Stopped) {
+            return Some(ContactState::Stopped);
+        }
+        // "had pulled over", and no number says more.
+        let last = self.account.sv.acts.iter().rfind(|fact| !fact.after_contact);
+        if self.no_speed && last.is_some_and(|fact| matches!(fact.act, Act::PullOver | Act::Park)) {
+            let parked = self.column == Some(Movement::Parked);
+            return Some(if parked { ContactState::Parked } else { ContactState::Stopped });
+        }
+        // Slowing in words, standing in numbers.
+        (self.zero && !turns_meanwhile(self.reading)).then_some(ContactState::Stopped)
     }
 }
 

@@ -10,13 +10,41 @@ use crate::world::SUBJECT;
 use recrash_model::account::{Act, Kind, KindGroup};
 
 impl Parser<'_> {
+    /// A joint ends a clause and begins the next, unless it joins two words of one.
     pub(super) fn joint(&mut self, joint: Joint, carry: &mut Carry, behind: &[Placed]) {
         let next = behind
             .iter()
             .take(3)
             .map(|placed| &placed.chunk)
             .find(|chunk| joint != Joint::And || !matches!(chunk, Chunk::Word));
-        // "rolled across the street and into the van": one way.
+        let within_clause = joint == Joint::And
+            && (self.is_one_way(carry, behind)
+                || self.says_more_of_driver(carry, behind)
+                || self.is_second_of_pair(next, carry, behind)
+                || is_row_of_nouns(next, carry));
+        if within_clause {
+            return;
+        }
+        carry.also = None;
+        if self.is_of_main_besides(joint, carry, behind) {
+            (carry.subject, carry.relative) = (carry.main.clone(), false);
+        }
+        if let Some(mention) = self.seen_leaving(joint, behind, carry) {
+            carry.subject = Some(mention);
+        }
+        self.leave_place(carry, false);
+        carry.reduced = false;
+        carry.clause += 1;
+        (carry.preposition, carry.relation, carry.be, carry.to) = (None, None, false, false);
+        if joint == Joint::And && matches!(next, Some(Chunk::Verb(..) | Chunk::Not | Chunk::Be)) {
+            self.goes_on_with_verb(next, carry, behind);
+        } else {
+            begin_clause(joint, next, carry);
+        }
+    }
+
+    /// "rolled across the street and into the van", "maneuvered forward and to the left": one way.
+    fn is_one_way(&mut self, carry: &mut Carry, behind: &[Placed]) -> bool {
         let into = matches!(
             behind.first().map(|placed| &placed.chunk),
             Some(Chunk::Preposition("into" | "against" | "around" | "past"))
@@ -27,31 +55,41 @@ impl Parser<'_> {
             to && matches!(self.tokens[placed.first - 2].text.as_str(), "forward" | "around" | "past")
                 && matches!(placed.chunk, Chunk::Relation(Relation::Left | Relation::Right))
         });
-        if joint == Joint::And && (into || aside) && carry.frame.is_some() {
-            (carry.preposition, carry.relation) = (None, None);
-            // "forward and to the right at the fork": a way.
-            let fork = |at: usize| {
-                self.tokens.get(at).is_some_and(|token| {
-                    matches!(token.text.as_str(), "fork" | "split" | "intersection" | "junction" | "corner" | "lane")
-                })
-            };
-            let end = behind[0].end;
-            if aside && !(end..end + 3).any(fork) {
-                self.goes_aside(carry);
-            }
-            return;
+        if !(into || aside) || carry.frame.is_none() {
+            return false;
         }
-        // "driving on the right, and overlapping its lane, the van passed": more of who drives.
+        (carry.preposition, carry.relation) = (None, None);
+        // "forward and to the right at the fork": a way.
+        let fork = |at: usize| {
+            self.tokens.get(at).is_some_and(|token| {
+                matches!(token.text.as_str(), "fork" | "split" | "intersection" | "junction" | "corner" | "lane")
+            })
+        };
+        let end = behind[0].end;
+        if aside && !(end..end + 3).any(fork) {
+            self.goes_aside(carry);
+        }
+        true
+    }
+
+    /// "driving on the right, and overlapping its lane, the van passed": more of who drives.
+    fn says_more_of_driver(&self, carry: &mut Carry, behind: &[Placed]) -> bool {
         let unknown = behind
             .first()
             .filter(|placed| matches!(placed.chunk, Chunk::Word) && self.tokens[placed.first].text.ends_with("ing"));
         let takes = matches!(behind.get(1).map(|placed| &placed.chunk), Some(Chunk::Noun(_) | Chunk::Piece(_)));
-        if joint == Joint::And && unknown.is_some() && takes && carry.subject.is_some() {
+        let says_more = unknown.is_some() && takes && carry.subject.is_some();
+        if says_more {
             (carry.preposition, carry.relation, carry.frame) = (Some("of"), None, None);
-            return;
         }
-        // "between the van and a parked car": the second of a pair, and no new clause.
-        let noun = matches!(next, Some(Chunk::Noun(_) | Chunk::Piece(_)));
+        says_more
+    }
+
+    /// "between the van and a parked car": the second of a pair, and no new clause.
+    fn is_second_of_pair(&self, next: Option<&Chunk>, carry: &mut Carry, behind: &[Placed]) -> bool {
+        if !is_named(next) {
+            return false;
+        }
         let ends = behind.get(1).is_none_or(|placed| match placed.chunk {
             // "and the van, coming from the left, hit it".
             Chunk::Comma => !is_inserted(&behind[2..]),
@@ -59,91 +97,58 @@ impl Parser<'_> {
             Chunk::Joint(joint) => joint != Joint::And || self.tokens[placed.first].text == "and",
             _ => false,
         });
-        let second = noun && (self.is_passed_too(carry, behind) || self.is_other_side(carry, behind));
-        if joint == Joint::And && noun && (ends && carry.has_verb || std::mem::take(&mut carry.pair) || second) {
+        let second = ends && carry.has_verb
+            || std::mem::take(&mut carry.pair)
+            || self.is_passed_too(carry, behind)
+            || self.is_other_side(carry, behind);
+        if second {
             carry.preposition = Some("and");
-            return;
         }
-        // "the van and the bus": nouns in a row.
-        let nouns = joint == Joint::And
-            && matches!(next, Some(Chunk::Noun(_) | Chunk::Piece(_)))
-            && !carry.has_verb
-            && !carry.after_comma
-            && carry.subject.is_some();
-        if nouns {
-            carry.also = carry.subject.clone();
-            return;
-        }
-        carry.also = None;
-        // "It passed the van which was waiting while also running the light": it ran the light.
-        let also = |placed: &&Placed| !matches!(placed.chunk, Chunk::Word);
-        let ing = matches!(behind.iter().find(also).map(|placed| &placed.chunk), Some(Chunk::Verb(_, Form::Ing)));
+        second
+    }
+
+    /// "It passed the van which was waiting while also running the light": it ran the light.
+    fn is_of_main_besides(&self, joint: Joint, carry: &Carry, behind: &[Placed]) -> bool {
+        let known = |placed: &&Placed| !matches!(placed.chunk, Chunk::Word);
+        let ing = matches!(behind.iter().find(known).map(|placed| &placed.chunk), Some(Chunk::Verb(_, Form::Ing)));
         let stands = carry.frame.is_some_and(|frame| self.frames[frame].act() == Some(Act::Hold));
         let besides = behind.first().is_some_and(|placed| self.tokens[placed.first].text == "also");
-        if joint == Joint::While
+        joint == Joint::While
             && (stands || besides)
             && ing
             && carry.relative
             && carry.has_verb
             && carry.main.is_some()
             && !self.did_to(carry)
-        {
-            (carry.subject, carry.relative) = (carry.main.clone(), false);
+    }
+
+    /// "braked and steered", "did not slow down or stop": another verb of the same clause.
+    fn goes_on_with_verb(&self, next: Option<&Chunk>, carry: &mut Carry, behind: &[Placed]) {
+        // "braked shortly before the impact and steered to the right": no clause began there.
+        if carry.joint == Some(Joint::Before) && carry.frame.is_none() && self.is_behind_time(behind) {
+            (carry.joint, carry.stranger) = (None, false);
         }
-        if let Some(mention) = self.seen_leaving(joint, behind, carry) {
-            carry.subject = Some(mention);
+        // "did not slow down or stop" denies both.
+        let or = behind.first().is_some_and(|next| next.first > 0 && self.tokens[next.first - 1].text == "or");
+        carry.negated = or
+            && matches!(next, Some(Chunk::Verb(_, Form::Base)))
+            && carry.frame.is_some_and(|frame| self.frames[frame].negated);
+        carry.row = true;
+        if carry.relative {
+            // "a van that was behind it and struck it" goes on with the van.
+            carry.has_verb = true;
         }
-        self.leave_place(carry, false);
-        carry.reduced = false;
-        carry.clause += 1;
-        (carry.preposition, carry.relation, carry.be, carry.to) = (None, None, false, false);
-        if joint != Joint::And || !matches!(next, Some(Chunk::Verb(..) | Chunk::Not | Chunk::Be)) {
-            carry.stranger = false;
+        if !matches!(next, Some(Chunk::Verb(_, Form::Base))) {
+            carry.progress = None;
         }
-        if joint != Joint::And {
-            (carry.lead_heading, carry.lead_lane) = (None, None);
-            carry.joint = Some(joint);
-            (carry.progress, carry.negated) = (None, false);
+        // "approached a light that was red and stopped": no light does.
+        let stops =
+            matches!(next, Some(Chunk::Verb(Sense::Act(Act::Stop | Act::Hold | Act::Slow) | Sense::Yield, Form::Past)));
+        if stops && carry.relative && carry.stranger && carry.main.is_some() {
+            (carry.subject, carry.stranger, carry.relative, carry.frame) = (carry.main.clone(), false, false, None);
         }
-        if joint == Joint::And && matches!(next, Some(Chunk::Verb(..) | Chunk::Not | Chunk::Be)) {
-            // "braked shortly before the impact and steered to the right": no clause began there.
-            if carry.joint == Some(Joint::Before) && carry.frame.is_none() && self.is_behind_time(behind) {
-                (carry.joint, carry.stranger) = (None, false);
-            }
-            // "did not slow down or stop" denies both.
-            let or = behind.first().is_some_and(|next| next.first > 0 && self.tokens[next.first - 1].text == "or");
-            carry.negated = or
-                && matches!(next, Some(Chunk::Verb(_, Form::Base)))
-                && carry.frame.is_some_and(|frame| self.frames[frame].negated);
-            carry.row = true;
-            if carry.relative {
-                // "a van that was behind it and struck it" goes on with the van.
-                carry.has_verb = true;
-            }
-            if !matches!(next, Some(Chunk::Verb(_, Form::Base))) {
-                carry.progress = None;
-            }
-            // "approached a light that was red and stopped": no light does.
-            let stops = matches!(
-                next,
-                Some(Chunk::Verb(Sense::Act(Act::Stop | Act::Hold | Act::Slow) | Sense::Yield, Form::Past))
-            );
-            if stops && carry.relative && carry.stranger && carry.main.is_some() {
-                (carry.subject, carry.stranger, carry.relative, carry.frame) = (carry.main.clone(), false, false, None);
-            }
-            if let Some(main) = self.saw_and_did(next, carry) {
-                (carry.subject, carry.has_verb, carry.relative) = (Some(main), true, false);
-            }
-            return;
-        }
-        (carry.progress, carry.negated) = (None, false);
-        carry.relative = false;
-        carry.fresh = true;
-        carry.frame = None;
-        carry.governed = false;
-        if joint != Joint::And && !matches!(next, Some(Chunk::Noun(_) | Chunk::Piece(_) | Chunk::Pronoun)) {
-            // "while stopped", "before turning": of whom the clause is about, or of who is named next.
-            carry.has_verb = carry.subject.is_some();
+        if let Some(main) = self.saw_and_did(next, carry) {
+            (carry.subject, carry.has_verb, carry.relative) = (Some(main), true, false);
         }
     }
 
@@ -416,6 +421,34 @@ impl Parser<'_> {
             (carry.has_verb, carry.stranger) = (carry.main.is_some(), false);
         }
     }
+}
+
+/// Whether somebody, or a part, is named here.
+const fn is_named(chunk: Option<&Chunk>) -> bool {
+    matches!(chunk, Some(Chunk::Noun(_) | Chunk::Piece(_)))
+}
+
+/// "the van and the bus": nouns in a row.
+fn is_row_of_nouns(next: Option<&Chunk>, carry: &mut Carry) -> bool {
+    let nouns = is_named(next) && !carry.has_verb && !carry.after_comma && carry.subject.is_some();
+    if nouns {
+        carry.also = carry.subject.clone();
+    }
+    nouns
+}
+
+/// "when", "after", "and the van": a clause of its own, of whom it is about or of who is named next.
+fn begin_clause(joint: Joint, next: Option<&Chunk>, carry: &mut Carry) {
+    if joint != Joint::And {
+        (carry.lead_heading, carry.lead_lane) = (None, None);
+        carry.joint = Some(joint);
+        if !(is_named(next) || matches!(next, Some(Chunk::Pronoun))) {
+            // "while stopped", "before turning": of whom the clause is about, or of who is named next.
+            carry.has_verb = carry.subject.is_some();
+        }
+    }
+    (carry.stranger, carry.relative, carry.governed, carry.fresh) = (false, false, false, true);
+    (carry.progress, carry.negated, carry.frame) = (None, false, None);
 }
 
 /// Whether the words behind a comma say more of the noun before it, and its verb is still to come: "a van, coming from the left, hit it",

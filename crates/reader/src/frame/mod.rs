@@ -5,10 +5,13 @@ mod attach;
 mod build;
 mod doors;
 mod handled;
+mod heading;
+mod in_lane;
 mod joint;
 mod likewise;
 mod maneuver;
 mod named;
+mod naming;
 mod object;
 mod pairs;
 mod parser;
@@ -25,9 +28,9 @@ mod word;
 pub use crate::world::Own;
 
 use crate::chunk::{Joint, Piece, Spot};
-use crate::lexicon::{COMPANY, Form, Lexicon, Meaning, Occupant, Part, Progress, Relation, Sense};
-use crate::token::{Sentence, Token, TokenKind};
-use crate::world::{Actor, SUBJECT, World};
+use crate::lexicon::{Form, Lexicon, Meaning, Occupant, Part, Progress, Relation, Sense};
+use crate::token::{Sentence, Token};
+use crate::world::{Actor, Known, SUBJECT, World};
 use parser::Parser;
 use recrash_model::account::{Act, Compass, KindGroup, LaneWord, LeftRight};
 
@@ -130,91 +133,70 @@ pub struct Story {
     pub world: World,
 }
 
-/// Companies that report, and whose vehicles others drive too.
-const MAKERS: [&str; 3] = ["tesla", "rivian", "lucid"];
-
 /// Most tokens of a narrative that are read; the longest published one has a third of it.
 const MOST_TOKENS: usize = 6_000;
+
+/// What the words of a narrative tell.
+struct Told {
+    /// Whether a sentence is a standing phrase.
+    standing: Vec<bool>,
+    /// Events of the others.
+    frames: Vec<Frame>,
+    /// Who is in them.
+    world: World,
+}
 
 /// Reads a narrative. `own`: kind of the subject vehicle, where it is known.
 pub fn story(text: &str, own: Own<'_>) -> Story {
     let mut tokens = crate::token::tokens(text);
     tokens.truncate(MOST_TOKENS);
-    // "V2", "Vehicle2", "Unit 2": another vehicle.
-    for at in (0..tokens.len()).rev() {
-        let word = tokens[at].text.as_str();
-        let number = word.strip_prefix("vehicle").or_else(|| word.strip_prefix('v'));
-        let number = number.filter(|number| matches!(*number, "2" | "3" | "4" | "5"));
-        let unit = matches!(tokens[at].text.as_str(), "unit" | "party") && {
-            let next = tokens.get(at + 1).map_or("", |next| next.text.as_str());
-            matches!(next, "2" | "3" | "4" | "5")
-        };
-        // "V-1", "P-2".
-        let dashed = matches!(tokens[at].text.as_str(), "v" | "p")
-            && tokens.get(at + 1).is_some_and(|next| {
-                next.start == tokens[at].end + 1 && matches!(next.text.as_str(), "1" | "2" | "3" | "4" | "5")
-            });
-        let number = number.map(str::to_owned);
-        let unit = unit || dashed || number.is_some();
-        if let Some(number) = number {
-            let middle = tokens[at].end - number.len();
-            let end = std::mem::replace(&mut tokens[at].end, middle);
-            let token = Token { start: middle, end, text: number, kind: TokenKind::Number, capital: false };
-            tokens.insert(at + 1, token);
-        }
-        if unit {
-            "vehicle".clone_into(&mut tokens[at].text);
-            tokens[at].capital = false;
-        }
-    }
-    for at in 0..tokens.len() {
-        let named = tokens[at].capital && tokens[at].text.len() > 2 && tokens[at].text == own.company;
-        // "A Tesla struck it": of the company only in its own reports.
-        // "The Finch pulled over", "a Taxico vehicle": to a company that is called by a word for somebody, it is its name.
-        let make = |meaning: Meaning| match meaning {
-            Meaning::Make => MAKERS.contains(&own.company),
-            Meaning::Kind(_) => true,
-            _ => false,
-        };
-        if named && Lexicon::get().longest(&tokens, at, |meaning| !make(meaning)).is_none() {
-            COMPANY.clone_into(&mut tokens[at].text);
-        }
-    }
-    name_operators(&mut tokens);
+    naming::units(&mut tokens);
+    naming::companies(&mut tokens, own);
     reword::apply(&mut tokens);
     let sentences = crate::token::sentences(&tokens);
-    let (mut standing, mut frames, mut world) = best(&tokens, &sentences, own);
-    // "A gleeper struck it": who is meant is told by the record.
-    let alone =
-        world.actors.iter().skip(1).all(|known| known.kind.is_some_and(|kind| kind.group() == KindGroup::Object));
-    if let Some(word) = own.partner.filter(|_| alone) {
-        for stranger in strangers(&tokens) {
-            let mut named = tokens.clone();
-            for token in named.iter_mut().filter(|token| token.text == stranger) {
-                word.clone_into(&mut token.text);
-            }
-            let read = best(&named, &sentences, own);
-            let meets = |frame: &Frame| {
-                let pair = [frame.who, frame.object];
-                let other = pair.into_iter().flatten().find(|actor| *actor != SUBJECT);
-                frame.is_contact()
-                    && pair.contains(&Some(SUBJECT))
-                    && other.is_some_and(|actor| {
-                        read.2.actors[actor].kind_tokens.is_some_and(|(_, end)| tokens[end - 1].text == stranger)
-                    })
-            };
-            if read.1.iter().any(meets) {
-                (standing, frames, world) = read;
-                break;
-            }
-        }
-    }
+    let told = best(&tokens, &sentences, own);
+    let told = meets_stranger(&told, &tokens, &sentences, own).unwrap_or(told);
+    let Told { standing, mut frames, mut world } = told;
     frames.retain(|frame| adverbs::names_door(frame, &tokens, &sentences));
     adverbs::apply(&mut frames, &tokens, &sentences);
     supposed::apply(&mut frames, &tokens, &sentences);
     doors::settle(&mut frames, &tokens, &sentences, &world);
     doors::touched(&mut frames, &tokens);
-    // "a sedan and a van collided": with each other.
+    meet_each_other(&mut frames);
+    strikes_both(&mut frames, &mut world, &tokens);
+    pairs::apply(&mut frames, &mut world, &tokens);
+    stood_itself(&mut frames, &tokens, &sentences);
+    fall_once(&mut frames, &world);
+    no_one_meets_itself(&mut frames);
+    Story { tokens, sentences, standing, frames, world }
+}
+
+/// "A gleeper struck it", where nobody but things is named: who is meant is told by the record.
+fn meets_stranger(told: &Told, tokens: &[Token], sentences: &[Sentence], own: Own<'_>) -> Option<Told> {
+    let thing = |known: &Known| known.kind.is_some_and(|kind| kind.group() == KindGroup::Object);
+    let alone = told.world.actors.iter().skip(1).all(thing);
+    let word = own.partner.filter(|_| alone)?;
+    naming::strangers(tokens).into_iter().find_map(|stranger| {
+        let mut named = tokens.to_vec();
+        for token in named.iter_mut().filter(|token| token.text == stranger) {
+            word.clone_into(&mut token.text);
+        }
+        let read = best(&named, sentences, own);
+        let is_stranger = |actor: Actor| {
+            read.world.actors[actor].kind_tokens.is_some_and(|(_, end)| tokens[end - 1].text == stranger)
+        };
+        let meets = |frame: &Frame| {
+            let pair = [frame.who, frame.object];
+            let other = pair.into_iter().flatten().find(|actor| *actor != SUBJECT);
+            frame.is_contact() && pair.contains(&Some(SUBJECT)) && other.is_some_and(is_stranger)
+        };
+        let met = read.frames.iter().any(meets);
+        met.then_some(read)
+    })
+}
+
+/// "a sedan and a van collided": with each other.
+fn meet_each_other(frames: &mut [Frame]) {
     for at in 1..frames.len() {
         let (before, after) = frames.split_at_mut(at);
         let (one, other) = (&mut before[at - 1], &mut after[0]);
@@ -223,72 +205,31 @@ pub fn story(text: &str, own: Own<'_>) -> Story {
             (one.object, other.object) = (other.who, one.who);
         }
     }
-    strikes_both(&mut frames, &mut world, &tokens);
-    pairs::apply(&mut frames, &mut world, &tokens);
-    stood_itself(&mut frames, &tokens, &sentences);
-    fall_once(&mut frames, &world);
+}
+
+/// Nobody touches itself: who is meant then.
+fn no_one_meets_itself(frames: &mut [Frame]) {
     let about: Vec<(usize, Actor)> = frames
         .iter()
         .filter(|frame| frame.act().is_some() && !frame.aside)
         .filter_map(|frame| Some((frame.sentence, frame.who.filter(|who| *who != SUBJECT)?)))
         .collect();
-    for frame in &mut frames {
+    for frame in frames.iter_mut().filter(|frame| frame.is_contact()) {
         // "The fender and door panels touched the edge of the van's door": whose they are is not told, and the van's they are not.
         let panels = frame.with.as_ref().is_some_and(|piece| piece.door && piece.owner.is_none());
-        if frame.is_contact() && frame.who == frame.object && panels && frame.who.is_some_and(|who| who != SUBJECT) {
+        if frame.who == frame.object && panels && frame.who.is_some_and(|who| who != SUBJECT) {
             (frame.who, frame.with) = (Some(SUBJECT), None);
         }
-        // Nobody touches itself.
-        if frame.is_contact() && frame.who == Some(SUBJECT) && frame.object == Some(SUBJECT) {
+        if frame.who == Some(SUBJECT) && frame.object == Some(SUBJECT) {
             // "A cyclist behind did not stop when it slowed and struck its rear": whom the sentence is about.
             frame.who = about.iter().find(|(sentence, _)| *sentence == frame.sentence).map(|(_, who)| *who);
         }
     }
-    Story { tokens, sentences, standing, frames, world }
 }
-
-/// "A Tern autonomous vehicle ... the Tern vehicle", "a Tern vehicle driving in autonomous mode": a company whose name the lexicon does not know
-/// is known by its first vehicle.
-fn name_operators(tokens: &mut [Token]) {
-    let word = |at: usize| tokens.get(at).map_or("", |token| token.text.as_str());
-    let lexicon = Lexicon::get();
-    let subject = |at: usize| lexicon.longest(tokens, at, |meaning| matches!(meaning, Meaning::Subject)).is_some();
-    let drives_itself = |at: usize| {
-        let behind: Vec<&str> = (at..at + OWN_MODE_WITHIN).map(word).take_while(|word| *word != ".").collect();
-        behind.windows(2).any(|pair| {
-            matches!(
-                (pair[0], pair[1]),
-                ("autonomous" | "automated", "mode" | "system") | ("in", "autonomy") | ("ads", "engaged")
-            )
-        })
-    };
-    let named = |at: &usize| {
-        let token = &tokens[*at];
-        let unknown = token.capital
-            && token.kind == TokenKind::Word
-            && token.text.len() > 3
-            && lexicon.longest(tokens, *at, |_| true).is_none();
-        let vehicle = matches!(word(at + 1), "vehicle" | "truck" | "shuttle" | "car");
-        let called =
-            subject(at + 1) && !vehicle || vehicle && (word(at + 2) == "(" && subject(at + 3) || drives_itself(at + 2));
-        unknown && *at > 0 && matches!(word(at - 1), "a" | "an" | "the" | "our") && called
-    };
-    if (0..tokens.len()).any(|at| lexicon.longest(tokens, at, |meaning| matches!(meaning, Meaning::Company)).is_some())
-    {
-        return;
-    }
-    let Some(name) = (0..tokens.len()).find(named).map(|at| tokens[at].text.clone()) else { return };
-    for token in tokens.iter_mut().filter(|token| token.capital && token.text == name) {
-        COMPANY.clone_into(&mut token.text);
-    }
-}
-
-/// "a Tern truck traveling with its safety driver in autonomous mode": so near stands what drives it. [tokens]
-const OWN_MODE_WITHIN: usize = 10;
 
 /// "A man threw a bottle at both cars", where one other is known at most: the subject vehicle is one of the two.
 fn strikes_both(frames: &mut [Frame], world: &mut World, tokens: &[Token]) {
-    let vehicle = |known: &crate::world::Known| known.kind.is_some_and(recrash_model::account::Kind::is_vehicle);
+    let vehicle = |known: &Known| known.kind.is_some_and(recrash_model::account::Kind::is_vehicle);
     for frame in frames.iter_mut().filter(|frame| frame.is_contact()) {
         let (Some(who), Some(pair)) = (frame.who, frame.object.filter(|pair| *pair != SUBJECT)) else { continue };
         let known = &world.actors[pair];
@@ -296,7 +237,7 @@ fn strikes_both(frames: &mut [Frame], world: &mut World, tokens: &[Token]) {
             continue;
         };
         let both = (first.saturating_sub(1)..=first).any(|at| tokens[at].text == "both");
-        let before = |other: &crate::world::Known| other.kind_tokens.is_some_and(|(at, _)| at < first);
+        let before = |other: &Known| other.kind_tokens.is_some_and(|(at, _)| at < first);
         let others = world.actors.iter().enumerate().skip(1);
         let named = others
             .filter(|(actor, other)| ![who, pair].contains(actor) && vehicle(other) && !other.several && before(other));
@@ -342,43 +283,18 @@ fn stood_itself(frames: &mut [Frame], tokens: &[Token], sentences: &[Sentence]) 
     }
 }
 
-/// Nouns that nobody knows, and that may be a road user: "a gleeper was", "by a gleeper".
-fn strangers(tokens: &[Token]) -> Vec<String> {
-    let lexicon = Lexicon::get();
-    let word = |at: usize| tokens.get(at).map_or("", |token| token.text.as_str());
-    let mut all: Vec<String> = Vec::new();
-    for (at, token) in tokens.iter().enumerate().skip(1) {
-        let unknown = token.kind == TokenKind::Word
-            && !token.capital
-            && token.text.len() > 3
-            && lexicon.longest(tokens, at, |_| true).is_none()
-            && ["a", "an", "another", "the", "one"].contains(&word(at - 1));
-        let acts = lexicon.longest(tokens, at + 1, |meaning| matches!(meaning, Meaning::Verb(..))).is_some()
-            || matches!(
-                word(at + 1),
-                "was" | "had" | "that" | "which" | "who" | "behind" | "in" | "on" | "from" | "also"
-            );
-        let done_by = at > 1 && matches!(word(at - 2), "by" | "with" | "into");
-        if unknown && (acts || done_by) && !all.contains(&token.text) {
-            all.push(token.text.clone());
-        }
-    }
-    all.truncate(6);
-    all
-}
-
 /// A narrative as its words tell it; where none tells a contact, a word that nobody knows may.
-fn best(tokens: &[Token], sentences: &[Sentence], own: Own<'_>) -> (Vec<bool>, Vec<Frame>, World) {
+fn best(tokens: &[Token], sentences: &[Sentence], own: Own<'_>) -> Told {
     let read = parse(tokens, sentences, own, false);
-    if read.1.iter().any(Frame::is_contact) {
+    if read.frames.iter().any(Frame::is_contact) {
         return read;
     }
     let guessed = parse(tokens, sentences, own, true);
-    if guessed.1.iter().any(Frame::is_contact) { guessed } else { read }
+    if guessed.frames.iter().any(Frame::is_contact) { guessed } else { read }
 }
 
-/// Which sentences are standing phrases, the frames of the others, and who is in them.
-fn parse(tokens: &[Token], sentences: &[Sentence], own: Own<'_>, guesses: bool) -> (Vec<bool>, Vec<Frame>, World) {
+/// Reads the sentences that are no standing phrases.
+fn parse(tokens: &[Token], sentences: &[Sentence], own: Own<'_>, guesses: bool) -> Told {
     let lexicon = Lexicon::get();
     let mut standing = Vec::new();
     let (world, frames) = (World::new(own), Vec::new());
@@ -394,7 +310,7 @@ fn parse(tokens: &[Token], sentences: &[Sentence], own: Own<'_>, guesses: bool) 
         parser.looks_back = looks_back(words) || could_not_avoid(words);
         parser.read(*sentence);
     }
-    (standing, parser.frames, parser.world)
+    Told { standing, frames: parser.frames, world: parser.world }
 }
 
 /// A sentence with a standing phrase in it may tell the crash all the same.

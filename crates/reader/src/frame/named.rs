@@ -28,38 +28,23 @@ fn meets_subject(behind: &[Placed]) -> bool {
 }
 
 impl Parser<'_> {
+    /// Somebody or something is named. Whether the comma and the filled preposition before it still stand before what follows.
     pub(super) fn noun(&mut self, noun: &Noun, all: &[Placed], at: usize, carry: &mut Carry) -> bool {
         let placed = &all[at];
         if self.counts_between(placed) && carry.last.is_some() {
             return true;
         }
         let next = all.get(at + 1).map(|placed| &placed.chunk);
-        let tokens = (placed.first, placed.end);
         if self.is_own_thing(noun, all, at) {
             let actor = self.its(&self.tokens[placed.first].text, carry);
             self.mention(Mention { actor, piece: None, person: None, end: placed.end }, placed, carry, next);
             return false;
         }
         if self.is_what_it_is(noun, all, at, carry) {
-            // "was the third car in line at a light": it stood there.
-            if self.is_in_line(noun, placed.end) && carry.be {
-                let mut stands = self.frame(Some(SUBJECT), Sense::Act(Act::Hold), Form::Past, placed, carry);
-                stands.state = true;
-                self.frames.push(stands);
-                carry.frame = Some(self.frames.len() - 1);
-            }
+            self.stands_in_line(noun, placed, carry);
             return true;
         }
-        // "a vehicle's driving task", "in a driver's eyes": nobody of the story.
-        let anyone =
-            noun.article == Article::Indefinite && (noun.kind == Some(Kind::Vehicle) || noun.occupant.is_some());
-        let owns = self.tokens.get(placed.end).is_some_and(|next| next.text == "'s");
-        let of_road = self.tokens[placed.end..]
-            .iter()
-            .take(5)
-            .any(|token| matches!(token.text.as_str(), "lane" | "path" | "way"));
-        let thing = matches!(all.get(at + 2).map(|placed| &placed.chunk), Some(Chunk::Word | Chunk::Verb(..)));
-        if anyone && owns && thing && !of_road {
+        if self.is_of_anyone(noun, all, at) {
             (carry.preposition, carry.relation) = (None, None);
             return true;
         }
@@ -67,27 +52,13 @@ impl Parser<'_> {
         if carry.preposition == Some("of") && carry.frame.is_none() && self.begins_with_row(placed.first) {
             (carry.preposition, carry.governed) = (None, false);
         }
-        let hint = relation_behind(all, at);
         if let Some(actor) = self.apposed(noun, all, at, carry) {
-            self.world.describe(actor, noun, tokens);
+            self.world.describe(actor, noun, (placed.first, placed.end));
             self.attribute(noun, actor, placed, carry);
             (carry.governed, carry.after_comma) = (false, false);
             return true;
         }
-        self.world.main = carry.main.as_ref().map(|main| main.actor);
-        self.world.apart = self.stands_farther(placed.end) || self.goes_on_foot(noun, placed.end);
-        self.world.before = carry.relation == Some(Relation::Behind);
-        self.world.strikes = meets_subject(&all[at + 1..]);
-        self.world.counted = self.tokens[placed.first..].iter().take(2).any(|token| token.kind == TokenKind::Number);
-        let actor = self.world.resolve(noun, tokens, hint);
-        (self.world.apart, self.world.before) = (false, false);
-        (self.world.strikes, self.world.counted) = (false, false);
-        let verb = matches!(next, Some(Chunk::Be | Chunk::Verb(..)));
-        let actor = if verb && self.is_vehicle_of_story(noun, actor, carry) { SUBJECT } else { actor };
-        let actor = if self.is_who_stands(noun, actor, carry) { SUBJECT } else { actor };
-        let actor = self.whose_driver(noun, actor, placed, carry);
-        let actor = self.behind_its_like(noun, actor, carry);
-        let actor = self.who_does_so(noun, actor, all, at);
+        let actor = self.meant(noun, all, at, carry);
         // "one standing passenger": the vehicle does not stand.
         let described = if noun.occupant.is_some() { noun.owner.as_deref() } else { Some(noun) };
         if let Some(described) = described {
@@ -98,35 +69,84 @@ impl Parser<'_> {
             self.compass(compass, placed, carry);
             carry.preposition = Some("of");
         }
-        // "At this time a van ...": the van is not behind "at".
+        self.leave_preposition(noun, all, at, carry);
+        self.begin_outer_clause(noun, all, at, carry);
+        let person = noun.occupant.map(|(who, _)| who);
+        self.mention(Mention { actor, piece: None, person, end: placed.end }, placed, carry, next);
+        false
+    }
+
+    /// "was the third car in line at a light": it stood there.
+    fn stands_in_line(&mut self, noun: &Noun, placed: &Placed, carry: &mut Carry) {
+        if self.is_in_line(noun, placed.end) && carry.be {
+            let mut stands = self.frame(Some(SUBJECT), Sense::Act(Act::Hold), Form::Past, placed, carry);
+            stands.state = true;
+            self.frames.push(stands);
+            carry.frame = Some(self.frames.len() - 1);
+        }
+    }
+
+    /// "a vehicle's driving task", "in a driver's eyes": nobody of the story.
+    fn is_of_anyone(&self, noun: &Noun, all: &[Placed], at: usize) -> bool {
+        let end = all[at].end;
+        let anyone =
+            noun.article == Article::Indefinite && (noun.kind == Some(Kind::Vehicle) || noun.occupant.is_some());
+        let owns = self.tokens.get(end).is_some_and(|next| next.text == "'s");
+        let of_road =
+            self.tokens[end..].iter().take(5).any(|token| matches!(token.text.as_str(), "lane" | "path" | "way"));
+        let thing = matches!(all.get(at + 2).map(|placed| &placed.chunk), Some(Chunk::Word | Chunk::Verb(..)));
+        anyone && owns && thing && !of_road
+    }
+
+    /// Who is meant by a noun, by what the story and the words around it tell.
+    fn meant(&mut self, noun: &Noun, all: &[Placed], at: usize, carry: &Carry) -> Actor {
+        let placed = &all[at];
+        self.world.main = carry.main.as_ref().map(|main| main.actor);
+        self.world.apart = self.stands_farther(placed.end) || self.goes_on_foot(noun, placed.end);
+        self.world.before = carry.relation == Some(Relation::Behind);
+        self.world.strikes = meets_subject(&all[at + 1..]);
+        self.world.counted = self.tokens[placed.first..].iter().take(2).any(|token| token.kind == TokenKind::Number);
+        let actor = self.world.resolve(noun, (placed.first, placed.end), relation_behind(all, at));
+        (self.world.apart, self.world.before) = (false, false);
+        (self.world.strikes, self.world.counted) = (false, false);
+        let verb = matches!(all.get(at + 1).map(|next| &next.chunk), Some(Chunk::Be | Chunk::Verb(..)));
+        let actor = if verb && self.is_vehicle_of_story(noun, actor, carry) { SUBJECT } else { actor };
+        let actor = if self.is_who_stands(noun, actor, carry) { SUBJECT } else { actor };
+        let actor = self.whose_driver(noun, actor, placed, carry);
+        let actor = self.behind_its_like(noun, actor, carry);
+        self.who_does_so(noun, actor, all, at)
+    }
+
+    /// "At this time a van ...": the van is not behind "at".
+    fn leave_preposition(&self, noun: &Noun, all: &[Placed], at: usize, carry: &mut Carry) {
         let green = at > 0 && crate::chunk::is_colour(&self.tokens[all[at - 1].first].text);
         let apart = (carry.preposition != Some("to") || green) && self.stands_apart(all, at);
         if (carry.filled || apart) && noun.article != Article::None {
             (carry.preposition, carry.relation) = (None, None);
             // "It opened its door at the moment a van was driving by": the van begins a clause.
-            if matches!(next, Some(Chunk::Be)) {
+            if matches!(all.get(at + 1).map(|next| &next.chunk), Some(Chunk::Be)) {
                 carry.frame = None;
             }
         }
-        // "As it was passing the van a coupe reversed": the coupe begins the clause around it.
-        let open = carry.frame.is_some_and(|frame| {
-            let frame = &self.frames[frame];
+    }
+
+    /// "As it was passing the van a coupe reversed": the coupe begins the clause around it.
+    fn begin_outer_clause(&self, noun: &Noun, all: &[Placed], at: usize, carry: &mut Carry) {
+        let frame = carry.frame.map(|frame| &self.frames[frame]);
+        let open = frame.is_some_and(|frame| {
             frame.object.is_none() && transitive(frame.sense) && !matches!(frame.act(), Some(Act::Follow | Act::Slow))
         });
         let inner = carry.joint.is_some_and(|joint| joint != Joint::And) && carry.has_verb && !carry.relative;
         let loose = carry.preposition.is_none() && carry.relation.is_none() && !(carry.be || carry.fresh || open);
-        let slows = carry.frame.is_some_and(|frame| self.frames[frame].act() == Some(Act::Slow));
+        let slows = frame.is_some_and(|frame| frame.act() == Some(Act::Slow));
         let known = noun.article == Article::Definite && slows;
         if loose && inner && carry.mains.len() == 1 && (noun.article == Article::Indefinite || known) {
             // "When it braked the van behind it did not stop".
-            let denied =
-                || all[at + 1..].iter().take_while(|next| !matches!(next.chunk, Chunk::Comma | Chunk::Joint(_)));
-            let denied = || denied().any(|next| matches!(next.chunk, Chunk::Not));
-            carry.after_comma |= another_finite(all, at) || goes_on_behind_comma(&all[at + 1..]) || denied();
+            let behind = &all[at + 1..];
+            let mut clause = behind.iter().take_while(|next| !matches!(next.chunk, Chunk::Comma | Chunk::Joint(_)));
+            let denied = clause.any(|next| matches!(next.chunk, Chunk::Not));
+            carry.after_comma |= another_finite(all, at) || goes_on_behind_comma(behind) || denied;
         }
-        let person = noun.occupant.map(|(who, _)| who);
-        self.mention(Mention { actor, piece: None, person, end: placed.end }, placed, carry, next);
-        false
     }
 
     /// "The line of cars", "and a row of vans": a noun behind "of" that a clause begins with.

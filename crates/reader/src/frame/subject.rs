@@ -2,7 +2,7 @@
 
 use super::Frame;
 use super::parser::{Carry, Mention, Parser};
-use super::row::Spoken;
+use super::row::{Spoken, another_finite};
 use crate::chunk::{Chunk, Joint, Placed, Spot};
 use crate::lexicon::{Form, Meaning, Relation, Sense};
 use crate::world::{Actor, SUBJECT};
@@ -86,13 +86,31 @@ impl Parser<'_> {
 
     /// Verbs whose subject is named only now: "While stopped, the van ...".
     pub(super) fn settle(&mut self, actor: Actor, carry: &mut Carry) {
-        // "While stopped at a light, a man began to cross": of somebody new it is not told.
-        let new = actor != SUBJECT && carry.main.is_none() && !carry.inverts && {
-            let known = &self.world.actors[actor];
-            // Only the headline has named it so far.
-            let named_only = !known.acted && self.world.topic == SUBJECT && known.mentions == 2;
-            known.mentions == 1 || named_only
-        };
+        let new = self.is_somebody_new(actor, carry);
+        let ready = if self.waits_on(carry) { Vec::new() } else { std::mem::take(&mut carry.pending) };
+        for pending in ready {
+            let dangles = new && self.is_told_of_topic(&self.frames[pending], actor);
+            if self.frames[pending].passive {
+                self.frames[pending].object = Some(actor);
+            } else {
+                self.tell_of(pending, if dangles { self.world.topic } else { actor });
+            }
+        }
+    }
+
+    /// "While stopped at a light, a man began to cross": of somebody new it is not told.
+    fn is_somebody_new(&self, actor: Actor, carry: &Carry) -> bool {
+        if actor == SUBJECT || carry.main.is_some() || carry.inverts {
+            return false;
+        }
+        let known = &self.world.actors[actor];
+        // Only the headline has named it so far.
+        let named_only = !known.acted && self.world.topic == SUBJECT && known.mentions == 2;
+        known.mentions == 1 || named_only
+    }
+
+    /// Whether who is named here is not yet the one of whom the verbs before are told.
+    fn waits_on(&self, carry: &Carry) -> bool {
         // "Stopped because traffic had not cleared, the AV was hit": the AV.
         let inner = carry.joint.is_some_and(|joint| matches!(joint, Joint::Because))
             && !carry.after_comma
@@ -103,54 +121,57 @@ impl Parser<'_> {
                 let waiting = &self.frames[*number];
                 waiting.sense == Sense::Yield && self.tokens[waiting.first].text == "letting"
             });
-        let ready = if inner || lets { Vec::new() } else { std::mem::take(&mut carry.pending) };
-        for pending in ready {
-            let waiting = &self.frames[pending];
-            // "Stopped behind it, a van set off": nobody stands behind itself.
-            let by_topic = waiting.relations.iter().any(|(_, to)| *to == Some(self.world.topic));
-            let stands = waiting.state && matches!(waiting.sense, Sense::Act(Act::Hold) | Sense::Parked) && !by_topic;
-            // "It began to cross. While crossing, a van ...": who did so before.
-            let goes_on = waiting.form == Form::Ing
-                && waiting.act().is_some()
-                && self.frames.iter().any(|before| {
-                    before.sentence < waiting.sentence
-                        && before.who == Some(self.world.topic)
-                        && !before.negated
-                        && before.act() == waiting.act()
-                        && !matches!(before.act(), Some(Act::Follow))
-                });
-            // "While passing the driveway, a van ...": who passes it is told before.
-            let passes = waiting.form == Form::Ing
-                && self.world.topic == SUBJECT
-                && matches!(waiting.sense, Sense::Act(Act::Pass | Act::Enter) | Sense::Approach)
-                && waiting.object != Some(SUBJECT)
-                && !self.comes_so(waiting)
-                && !waiting.relations.iter().any(|(_, to)| *to == Some(SUBJECT));
-            // "While driving in its lane, a man ...": who walks has none.
-            let lane = self.tokens[waiting.first..].iter().take(NOUN_WORDS).any(|token| token.text == "lane");
-            let on_foot = self.world.actors[actor].kind.is_some_and(|kind| kind.group() == KindGroup::OnFoot);
-            let verb = self.tokens[waiting.first].text.as_str();
-            let driven = ["driv", "travel", "proceed"].iter().any(|stem| verb.starts_with(stem));
-            let drives = lane && on_foot && driven && self.world.topic == SUBJECT;
-            let dangles = new && (stands || goes_on || passes || drives);
-            if self.frames[pending].passive {
-                self.frames[pending].object = Some(actor);
-                continue;
-            }
-            let who = if dangles { self.world.topic } else { actor };
-            self.frames[pending].who = Some(who);
-            let places: Vec<Relation> = self.frames[pending].relations.iter().map(|(place, _)| *place).collect();
-            if who != SUBJECT && self.comes_so(&self.frames[pending]) {
-                places.into_iter().for_each(|place| self.note(who, place));
-            }
-            // "Driving in the left lane, it ...".
-            if let Some(lane) = self.frames[pending].lane.filter(|(_, first, _)| self.stands_in(*first)) {
-                self.world.actors[who].lane.get_or_insert(lane);
-            }
-            // "While turning left from southbound Oak Street, it ...".
-            if let (Some(heading), false) = (self.frames[pending].heading, self.frames[pending].onto) {
-                self.world.actors[who].heading.get_or_insert(heading);
-            }
+        inner || lets
+    }
+
+    /// Whether a verb before somebody new is told of whom the story is about.
+    fn is_told_of_topic(&self, waiting: &Frame, actor: Actor) -> bool {
+        // "Stopped behind it, a van set off": nobody stands behind itself.
+        let by_topic = waiting.relations.iter().any(|(_, to)| *to == Some(self.world.topic));
+        let stands = waiting.state && matches!(waiting.sense, Sense::Act(Act::Hold) | Sense::Parked) && !by_topic;
+        // "It began to cross. While crossing, a van ...": who did so before.
+        let goes_on = waiting.form == Form::Ing
+            && waiting.act().is_some()
+            && self.frames.iter().any(|before| {
+                before.sentence < waiting.sentence
+                    && before.who == Some(self.world.topic)
+                    && !before.negated
+                    && before.act() == waiting.act()
+                    && !matches!(before.act(), Some(Act::Follow))
+            });
+        // "While passing the driveway, a van ...": who passes it is told before.
+        let passes = waiting.form == Form::Ing
+            && self.world.topic == SUBJECT
+            && matches!(waiting.sense, Sense::Act(Act::Pass | Act::Enter) | Sense::Approach)
+            && waiting.object != Some(SUBJECT)
+            && !self.comes_so(waiting)
+            && !waiting.relations.iter().any(|(_, to)| *to == Some(SUBJECT));
+        stands || goes_on || passes || self.drives_in_lane(waiting, actor)
+    }
+
+    /// "While driving in its lane, a man ...": who walks has none.
+    fn drives_in_lane(&self, waiting: &Frame, actor: Actor) -> bool {
+        let lane = self.tokens[waiting.first..].iter().take(NOUN_WORDS).any(|token| token.text == "lane");
+        let on_foot = self.world.actors[actor].kind.is_some_and(|kind| kind.group() == KindGroup::OnFoot);
+        let verb = self.tokens[waiting.first].text.as_str();
+        let driven = ["driv", "travel", "proceed"].iter().any(|stem| verb.starts_with(stem));
+        lane && on_foot && driven && self.world.topic == SUBJECT
+    }
+
+    /// Who it was that a verb before the name told of: the places, the lane and the direction that it told are those of that one.
+    fn tell_of(&mut self, pending: usize, who: Actor) {
+        self.frames[pending].who = Some(who);
+        let places: Vec<Relation> = self.frames[pending].relations.iter().map(|(place, _)| *place).collect();
+        if who != SUBJECT && self.comes_so(&self.frames[pending]) {
+            places.into_iter().for_each(|place| self.note(who, place));
+        }
+        // "Driving in the left lane, it ...".
+        if let Some(lane) = self.frames[pending].lane.filter(|(_, first, _)| self.stands_in(*first)) {
+            self.world.actors[who].lane.get_or_insert(lane);
+        }
+        // "While turning left from southbound Oak Street, it ...".
+        if let (Some(heading), false) = (self.frames[pending].heading, self.frames[pending].onto) {
+            self.world.actors[who].heading.get_or_insert(heading);
         }
     }
 
@@ -180,16 +201,8 @@ impl Parser<'_> {
     }
 
     /// Of whom a verb is told.
-    pub(super) fn who_of(
-        &self,
-        sense: Sense,
-        form: Form,
-        placed: &Placed,
-        carry: &Carry,
-        purpose: bool,
-        finite_behind: bool,
-    ) -> Option<Mention> {
-        if carry.reduced && form == Form::Past && !carry.be {
+    pub(super) fn who_of(&self, verb: &Spoken<'_>, carry: &Carry, purpose: bool) -> Option<Mention> {
+        if carry.reduced && verb.form == Form::Past && !carry.be {
             return carry.subject.clone();
         }
         if carry.pushed && purpose {
@@ -198,92 +211,94 @@ impl Parser<'_> {
         if carry.began && carry.lead_who.is_some() {
             return carry.lead_who.clone();
         }
-        // "a van braking too late and striking": the second participle is of who does the first.
-        if let (true, Form::Ing, Some(before)) =
-            (carry.row && !carry.be, form, carry.frame.map(|frame| &self.frames[frame]))
-            && before.form == Form::Ing
-            && let Some(actor) = before.who
-        {
+        let of_row = if verb.form == Form::Ing { self.of_participle_before(carry) } else { None };
+        of_row
+            .or_else(|| self.of_participle(verb.sense, verb.form, verb.placed(), carry))
+            .or_else(|| self.of_governed(verb, carry))
+            .or_else(|| self.of_described(verb, carry))
+            .or_else(|| self.faces_so(verb, carry))
+            .or_else(|| self.of_striker(verb, carry))
+            .or_else(|| self.of_object(verb, carry, purpose))
+            .or_else(|| carry.subject.clone())
+    }
+
+    /// "a van braking too late and striking", "a van traveling west attempting to turn": the second participle is of who does the first.
+    fn of_participle_before(&self, carry: &Carry) -> Option<Mention> {
+        let before = carry.frame.map(|frame| &self.frames[frame]).filter(|before| before.form == Form::Ing)?;
+        if let Some(actor) = before.who.filter(|_| carry.row && !carry.be) {
             return Some(Mention { actor, piece: None, person: None, end: before.end });
         }
-        // "a van traveling west attempting to turn": of whom the participle before is told.
-        if let (Form::Ing, Some(before), Some(last)) = (form, carry.frame.map(|frame| &self.frames[frame]), &carry.last)
-            && !(carry.be || carry.fresh || carry.after_comma || carry.began)
-            && before.form == Form::Ing
-            && before.described
-            && !before.is_contact()
-            && before.who == Some(last.actor)
-        {
-            return Some(last.clone());
-        }
-        if let Some(mention) = self.of_participle(sense, form, placed, carry) {
-            return Some(mention);
-        }
-        if carry.subject.is_none()
-            && form == Form::Ing
+        let at_once = !(carry.be || carry.fresh || carry.after_comma || carry.began);
+        let describes = before.described && !before.is_contact();
+        carry.last.clone().filter(|last| at_once && describes && before.who == Some(last.actor))
+    }
+
+    /// "because of the cars blocking it": a participle right behind a governed noun, where the clause is about nobody.
+    fn of_governed(&self, verb: &Spoken<'_>, carry: &Carry) -> Option<Mention> {
+        let open = carry.subject.is_none()
+            && verb.form == Form::Ing
             && !carry.be
             && carry.governed
             && !carry.fresh
-            && !carry.after_comma
-        {
-            let near =
-                carry.last.as_ref().filter(|last| placed.first <= last.end + 1 && self.world.actors[last.actor].acts());
-            if near.is_some() {
-                return near.cloned();
-            }
-        }
-        if carry.after_comma
-            && form == Form::Ing
-            && let Some(described) = &carry.described
-        {
-            // "yielded to a truck, which had no lights on, traveling south": the truck.
-            let of_other = carry.main.as_ref().is_none_or(|main| main.actor != described.actor);
-            let moves = matches!(sense, Sense::Act(Act::Follow | Act::Turn | Act::UTurn | Act::Park | Act::Reverse))
-                || matches!(sense, Sense::Sided(Act::Turn, _));
-            if sense == Sense::Face || (of_other && moves) {
-                return carry.described.clone();
-            }
-        }
-        // "a truck stopped facing west": it faces so.
-        if let (Sense::Face, Form::Ing, false, Some(frame)) = (sense, form, carry.be, carry.frame)
-            && self.frames[frame].state
-            && self.frames[frame].end == placed.first
-            && let Some(actor) = self.frames[frame].who
-        {
-            return Some(Mention { actor, piece: None, person: None, end: placed.first });
-        }
-        // "stopped in a queue of traffic facing west": who stands in it does.
-        if let (Sense::Face, Form::Ing, false, Some(frame), Some(last)) =
-            (sense, form, carry.be, carry.frame, &carry.last)
-            && matches!(self.frames[frame].act(), Some(Act::Hold | Act::Stop))
-            && carry.governed
-            && last.end == placed.first
-            && self.is_in_queue(self.frames[frame].end, last.end)
-            && let Some(actor) = self.frames[frame].who
-        {
-            return Some(Mention { actor, piece: None, person: None, end: placed.first });
-        }
-        // "was struck by a van, traveling east": the van.
-        if let (true, Form::Ing, Some(last), Some(frame)) = (carry.after_comma, form, &carry.last, carry.frame)
-            && self.frames[frame].passive
-            && self.frames[frame].who == Some(last.actor)
-        {
-            return carry.last.clone();
-        }
-        // "because of the cars parked there": right behind the noun.
+            && !carry.after_comma;
+        let near = |last: &Mention| verb.placed().first <= last.end + 1 && self.world.actors[last.actor].acts();
+        carry.last.clone().filter(|last| open && near(last))
+    }
+
+    /// "yielded to a truck, which had no lights on, traveling south": the truck.
+    fn of_described(&self, verb: &Spoken<'_>, carry: &Carry) -> Option<Mention> {
+        let described = carry.described.as_ref().filter(|_| carry.after_comma && verb.form == Form::Ing)?;
+        let of_other = carry.main.as_ref().is_none_or(|main| main.actor != described.actor);
+        let moves = matches!(
+            verb.sense,
+            Sense::Act(Act::Follow | Act::Turn | Act::UTurn | Act::Park | Act::Reverse) | Sense::Sided(Act::Turn, _)
+        );
+        (verb.sense == Sense::Face || (of_other && moves)).then(|| described.clone())
+    }
+
+    /// "a truck stopped facing west", "stopped in a queue of traffic facing west": who stands there faces so.
+    fn faces_so(&self, verb: &Spoken<'_>, carry: &Carry) -> Option<Mention> {
+        let faces = verb.sense == Sense::Face && verb.form == Form::Ing && !carry.be;
+        let frame = carry.frame.map(|frame| &self.frames[frame]).filter(|_| faces)?;
+        let first = verb.placed().first;
+        let stands_in_queue = |last: &Mention| {
+            matches!(frame.act(), Some(Act::Hold | Act::Stop))
+                && carry.governed
+                && last.end == first
+                && self.is_in_queue(frame.end, last.end)
+        };
+        let so = frame.state && frame.end == first || carry.last.as_ref().is_some_and(stands_in_queue);
+        let actor = frame.who.filter(|_| so)?;
+        Some(Mention { actor, piece: None, person: None, end: first })
+    }
+
+    /// "was struck by a van, traveling east": the van.
+    fn of_striker(&self, verb: &Spoken<'_>, carry: &Carry) -> Option<Mention> {
+        let struck = carry.frame.map(|frame| &self.frames[frame]).filter(|frame| frame.passive)?;
+        let behind_comma = carry.after_comma && verb.form == Form::Ing;
+        carry.last.clone().filter(|last| behind_comma && struck.who == Some(last.actor))
+    }
+
+    /// "yielding to a van stopped in the lane", "because of the cars parked there": a participle behind an object belongs to the object.
+    fn of_object(&self, verb: &Spoken<'_>, carry: &Carry, purpose: bool) -> Option<Mention> {
+        let (form, placed) = (verb.form, verb.placed());
+        // Right behind the noun.
         let behind = carry.governed && carry.last.as_ref().is_some_and(|last| last.end == placed.first);
         let adjacent = carry.last.is_some() && !carry.after_comma && (!carry.fresh || behind);
-        // A participle behind an object belongs to the object: "yielding to a van stopped in the lane".
         // "by crossing the line": who does the rest.
         let by = carry.preposition == Some("by");
         let participle = matches!(form, Form::Ing | Form::Past) && !carry.be && !purpose && !carry.began && !by;
         // "The van ahead of it stopped": the van, unless it has a verb of its own behind.
         let waits = carry.subject.is_some() && !carry.has_verb && carry.joint.is_none_or(|joint| joint != Joint::And);
-        let of_place = carry.governed && carry.frame.is_none() && form == Form::Past && (finite_behind || !waits);
-        if adjacent && participle && (carry.has_verb || of_place) && self.touches_last(sense, form, placed, carry) {
-            return carry.last.clone();
-        }
-        carry.subject.clone()
+        let of_place = carry.governed
+            && carry.frame.is_none()
+            && form == Form::Past
+            && (!waits || another_finite(verb.all, verb.at));
+        let of_object = adjacent
+            && participle
+            && (carry.has_verb || of_place)
+            && self.touches_last(verb.sense, form, placed, carry);
+        carry.last.clone().filter(|_| of_object)
     }
 
     /// Whether the noun that ends here stands behind "from behind", "from between".

@@ -10,45 +10,30 @@ use super::row::{
 use super::sided;
 use crate::chunk::{Chunk, Joint, Placed};
 use crate::lexicon::{Form, Occupant, Progress, Sense};
-use crate::world::SUBJECT;
+use crate::world::{Actor, SUBJECT};
 use recrash_model::account::{Act, Kind};
 
 /// "whose driver was fast asleep": so far behind "whose" its clause may end. [tokens]
 const WHOSE_WITHIN: usize = 6;
 
+/// Who does what a verb tells, as its words name them.
+struct Doer {
+    who: Option<Mention>,
+    /// It tells how somebody stood who was met: "came upon a truck stopped in the road".
+    found: bool,
+    /// It tells what who strikes did at once: "struck it in passing".
+    meanwhile: bool,
+}
+
 impl Parser<'_> {
     /// A verb begins a frame.
     pub(super) fn verb(&mut self, sense: Sense, form: Form, all: &[Placed], at: usize, carry: &mut Carry) {
-        if carry.place && carry.subject.is_none() {
-            return;
-        }
-        if is_of_a_road(all, at, self.tokens[all[at].first].text.as_str()) {
-            carry.be = false;
-            return;
-        }
-        if self.is_attached(all, at) {
-            carry.attached = carry.last.as_ref().filter(|last| last.piece.is_none()).map(|last| last.actor);
-            carry.be = false;
+        if carry.place && carry.subject.is_none() || self.says_more_of_a_thing(all, at, carry) {
             return;
         }
         let mut verb = Spoken { sense, form, all, at };
-        // "a van whose hood was up struck it", "whose driver was asleep ran into it".
-        let first = all[at].first;
-        let whose = self.tokens[first.saturating_sub(WHOSE_WITHIN)..first].iter().any(|token| token.text == "whose");
-        carry.be &= !(whose && form == Form::Past && at > 0 && !matches!(all[at - 1].chunk, Chunk::Be));
-        let stands = matches!(sense, Sense::Act(Act::Hold | Act::Stop | Act::Follow) | Sense::Approach);
-        if stands && form == Form::Past && !carry.be && self.inverts(all, at) {
-            (carry.inverts, carry.subject, carry.last) = (true, None, None);
-        }
-        self.comes_loose(&verb, carry);
-        let stops = verb.sense == Sense::Act(Act::Stop);
-        verb.sense = self.sense_here(&verb, carry);
-        // What did not end in a standstill was begun.
-        carry.negated &= !(stops && verb.sense == Sense::Act(Act::Slow));
-        // "was not moving" tells that it stood.
-        carry.negated &= !(sense == Sense::Act(Act::Follow) && verb.sense == Sense::Act(Act::Hold));
-        // "failed to stay in its lane" tells that it left it.
-        carry.negated &= !(sense == Sense::Act(Act::Hold) && verb.sense == Sense::Act(Act::Drift));
+        self.finds_its_clause(&verb, carry);
+        verb.sense = self.sense_in_clause(&verb, carry);
         let finite = matches!(form, Form::Past | Form::Present) || form == Form::Ing && carry.be;
         leave_relative(&verb, carry);
         let own_progress = carry.progress;
@@ -62,31 +47,18 @@ impl Parser<'_> {
         verb.sense = if both { Sense::ContactMade } else { verb.sense };
         let to = std::mem::take(&mut carry.to) && form == Form::Base;
         let purpose = to && !carry.began;
-        let so = self.stands_so(&verb, carry);
-        if so.as_ref().is_some_and(|(_, stood)| *stood) {
-            verb.sense = Sense::Other;
-        }
-        let stood = self.stood_as_found(&verb, carry);
-        let found = stood.is_some();
-        let beside = so.map(|(mention, _)| mention).or(stood).or_else(|| self.beside(&verb, carry));
-        let meanwhile = self.did_so_in(&verb, carry);
-        let while_struck = self.stood_when_struck(&verb, carry);
-        let found = found || while_struck.is_some();
-        let beside = meanwhile.clone().or(while_struck).or_else(|| self.was_turning(&verb, carry)).or(beside);
-        let who =
-            beside.or_else(|| self.who_of(verb.sense, form, verb.placed(), carry, purpose, another_finite(all, at)));
-        let who = who.or_else(|| self.left_out(&verb, carry)).or_else(|| self.in_clause_of_object(&verb, carry));
+        let doer = self.doer(&mut verb, purpose, carry);
         carry.reduced &= !finite;
         let unknown = self.is_of_unknown(&verb, carry);
         // "A fault caused it to brake": it braked.
         let caused = carry.pushed && purpose && matches!(verb.sense, Sense::Act(_) | Sense::Sided(..));
-        let who = who.filter(|_| (!carry.stranger || caused) && !both && !unknown);
+        let who = doer.who.filter(|_| (!carry.stranger || caused) && !both && !unknown);
         let mut frame = self.begun_frame(&verb, who.as_ref(), carry);
-        frame.described |= meanwhile.is_some() || found;
+        frame.described |= doer.meanwhile || doer.found;
         if leads {
             frame.progress = own_progress.unwrap_or(Progress::Real);
         }
-        let described = found || self.only_describes(&verb, carry);
+        let described = doer.found || self.only_describes(&verb, carry);
         let be = std::mem::take(&mut carry.be);
         if self.tells_state(&verb, who.as_ref(), (be, described), carry) {
             frame.state = true;
@@ -94,26 +66,9 @@ impl Parser<'_> {
         }
         self.how_far(&mut frame, &verb, purpose, carry);
         let leading = self.done_to(&mut frame, &verb, be, carry);
-        if verb.sense == Sense::Push {
-            carry.pushed = false;
-        }
-        // "The driver disengaged it and steered left": who drives it.
-        if verb.sense == Sense::TakeOver
-            && frame.person == Some(Occupant::Driver)
-            && let Some(subject) = &mut carry.subject
-        {
-            subject.actor = SUBJECT;
-        }
-        if let Some(gap) =
-            carry.gap.take().filter(|gap| transitive(verb.sense) && frame.object.is_none() && frame.who != Some(*gap))
-        {
-            let named =
-                matches!(verb.next(), Some(Chunk::Noun(_) | Chunk::Pronoun | Chunk::Piece(_) | Chunk::Preposition(_)));
-            frame.object = (!named).then_some(gap);
-            if let (false, Sense::Act(Act::Follow)) = (named, verb.sense) {
-                self.follows(frame.who, gap);
-            }
-        }
+        carry.pushed &= verb.sense != Sense::Push;
+        takes_over(&frame, &verb, carry);
+        self.fill_gap(&mut frame, &verb, carry);
         self.went_on_into(&frame, carry);
         self.where_to(&mut frame, &verb, carry);
         let of_somebody = !(frame.passive || carry.stranger || unknown);
@@ -126,6 +81,85 @@ impl Parser<'_> {
         }
         carry.has_verb |= finite && !described || unnamed || carry.stranger;
         self.carry_on(&verb, number, leads, carry);
+    }
+
+    /// "a turn lane that opens there", "a dolly attached to the truck": no event.
+    fn says_more_of_a_thing(&self, all: &[Placed], at: usize, carry: &mut Carry) -> bool {
+        if is_of_a_road(all, at, self.tokens[all[at].first].text.as_str()) {
+            carry.be = false;
+            return true;
+        }
+        if self.is_attached(all, at) {
+            carry.attached = carry.last.as_ref().filter(|last| last.piece.is_none()).map(|last| last.actor);
+            carry.be = false;
+            return true;
+        }
+        false
+    }
+
+    /// Where a verb stands in its clause: behind "whose", before its subject, of a trailer that comes loose.
+    fn finds_its_clause(&mut self, verb: &Spoken<'_>, carry: &mut Carry) {
+        // "a van whose hood was up struck it", "whose driver was asleep ran into it".
+        let first = verb.placed().first;
+        let whose = self.tokens[first.saturating_sub(WHOSE_WITHIN)..first].iter().any(|token| token.text == "whose");
+        let behind_noun = verb.chunk_before().is_some_and(|before| !matches!(before, Chunk::Be));
+        carry.be &= !(whose && verb.form == Form::Past && behind_noun);
+        let stands = matches!(verb.sense, Sense::Act(Act::Hold | Act::Stop | Act::Follow) | Sense::Approach);
+        if stands && verb.form == Form::Past && !carry.be && self.inverts(verb.all, verb.at) {
+            (carry.inverts, carry.subject, carry.last) = (true, None, None);
+        }
+        self.comes_loose(verb, carry);
+    }
+
+    /// What a verb tells in its clause; one that tells the contrary is denied no more.
+    fn sense_in_clause(&self, verb: &Spoken<'_>, carry: &mut Carry) -> Sense {
+        let sense = self.sense_here(verb, carry);
+        let told_otherwise = match (verb.sense, sense) {
+            // What did not end in a standstill was begun.
+            (Sense::Act(Act::Stop), Sense::Act(Act::Slow)) => true,
+            // "was not moving" tells that it stood.
+            (Sense::Act(Act::Follow), Sense::Act(Act::Hold)) => true,
+            // "failed to stay in its lane" tells that it left it.
+            (Sense::Act(Act::Hold), Sense::Act(Act::Drift)) => true,
+            _ => false,
+        };
+        carry.negated &= !told_otherwise;
+        sense
+    }
+
+    /// Who does what a verb tells. One that tells how somebody stands tells no act.
+    fn doer(&self, verb: &mut Spoken<'_>, purpose: bool, carry: &Carry) -> Doer {
+        let so = self.stands_so(verb, carry);
+        if so.as_ref().is_some_and(|(_, stood)| *stood) {
+            verb.sense = Sense::Other;
+        }
+        let verb = &*verb;
+        let found = self.stood_as_found(verb, carry);
+        let meanwhile = self.did_so_in(verb, carry);
+        let struck = self.stood_when_struck(verb, carry);
+        let told = (found.is_some() || struck.is_some(), meanwhile.is_some());
+        let who = meanwhile
+            .or(struck)
+            .or_else(|| self.was_turning(verb, carry))
+            .or(so.map(|(mention, _)| mention))
+            .or(found)
+            .or_else(|| self.beside(verb, carry))
+            .or_else(|| self.who_of(verb, carry, purpose))
+            .or_else(|| self.left_out(verb, carry))
+            .or_else(|| self.in_clause_of_object(verb, carry));
+        Doer { who, found: told.0, meanwhile: told.1 }
+    }
+
+    /// "a van that it was following": whom the clause is about is the object.
+    fn fill_gap(&mut self, frame: &mut Frame, verb: &Spoken<'_>, carry: &mut Carry) {
+        let open = |gap: &Actor| transitive(verb.sense) && frame.object.is_none() && frame.who != Some(*gap);
+        let Some(gap) = carry.gap.take().filter(open) else { return };
+        let named =
+            matches!(verb.next(), Some(Chunk::Noun(_) | Chunk::Pronoun | Chunk::Piece(_) | Chunk::Preposition(_)));
+        frame.object = (!named).then_some(gap);
+        if let (false, Sense::Act(Act::Follow)) = (named, verb.sense) {
+            self.follows(frame.who, gap);
+        }
     }
 
     /// "Seeing that the van was not going to yield, it braked": what is seen has a verb of its own.
@@ -200,10 +234,9 @@ impl Parser<'_> {
 
     /// A verb that only says how far the next one came makes no frame.
     fn only_leads(&mut self, verb: &Spoken<'_>, carry: &mut Carry) {
-        let Spoken { form, all, at, .. } = *verb;
+        let form = verb.form;
         carry.began = false;
-        carry.lead_who =
-            self.who_of(Sense::Act(Act::Follow), form, verb.placed(), carry, false, another_finite(all, at));
+        carry.lead_who = self.who_of(&Spoken { sense: Sense::Act(Act::Follow), ..*verb }, carry, false);
         carry.began = true;
         carry.lead_describes =
             form == Form::Ing && !carry.be && carry.lead_who.is_some() && carry.lead_who != carry.subject;
@@ -471,6 +504,14 @@ fn is_of_a_road(all: &[Placed], at: usize, word: &str) -> bool {
 /// "was passed by a bus": "by" is a word of the verb.
 fn ends_in_by(verb: &Spoken<'_>, parser: &Parser<'_>) -> bool {
     !single(verb.placed()) && parser.tokens[verb.placed().end - 1].text == "by"
+}
+
+/// "The driver disengaged it and steered left": who drives it.
+fn takes_over(frame: &Frame, verb: &Spoken<'_>, carry: &mut Carry) {
+    let by_driver = verb.sense == Sense::TakeOver && frame.person == Some(Occupant::Driver);
+    if let Some(subject) = carry.subject.as_mut().filter(|_| by_driver) {
+        subject.actor = SUBJECT;
+    }
 }
 
 /// A finite verb behind a finished relative clause is of the clause around it.

@@ -2,7 +2,7 @@
 
 use super::parser::{Carry, Mention, Parser};
 use crate::chunk::{Chunk, Placed, is_determiner};
-use crate::lexicon::{Form, Sense};
+use crate::lexicon::{Form, Progress, Sense};
 use recrash_model::account::Kind;
 
 /// Participles of a thing that a vehicle carries or draws.
@@ -40,18 +40,8 @@ impl Parser<'_> {
         let placed = &all[at];
         let token = &self.tokens[placed.first];
         let word = token.text.as_str();
-        if self.touches_by_parts(word, all, at, carry) || self.guesses && self.may_touch(all, at, carry) {
-            self.verb(Sense::Contact, Form::Past, all, at, carry);
-            return false;
-        }
-        // "The AV misjudged a van's speed and turned": what it did to the van.
-        if self.does_something(all, at, carry) {
-            self.verb(Sense::Other, Form::Past, all, at, carry);
-            return false;
-        }
-        if self.draws_a_trailer(all, at, carry) {
-            let form = if word.ends_with("ing") { Form::Ing } else { Form::Past };
-            self.verb(Sense::Tow, form, all, at, carry);
+        if let Some((sense, form)) = self.tells_event(word, all, at, carry) {
+            self.verb(sense, form, all, at, carry);
             return false;
         }
         let next = all.get(at + 1).map(|placed| &placed.chunk);
@@ -59,41 +49,18 @@ impl Parser<'_> {
         if self.is_attached(all, at) {
             carry.attached = carry.last.as_ref().filter(|last| last.piece.is_none()).map(|last| last.actor);
         }
-        // "time to turn" is no turn; "at which time it turned" is one.
-        let waits_for = !matches!(word, "about" | "time" | "space" | "room" | "set" | "order" | "ready" | "route")
-            || matches!(next, Some(Chunk::Preposition("to" | "for")));
-        // "nudged over in order to get by": a purpose like any other.
-        let in_order = word == "order" && placed.first > 0 && self.tokens[placed.first - 1].text == "in";
-        if let Some(progress) = self.lexicon.progress(word).filter(|_| waits_for && !in_order) {
+        if let Some(progress) = self.says_how_far(word, placed, next) {
             (carry.progress, carry.began) = (Some(progress), true);
         }
         // "Data of the trip shows the AV driving": the AV begins a clause.
         if matches!(word, "shows" | "showed") {
             (carry.preposition, carry.relation) = (None, None);
         }
-        // "a collision occurred involving two vans".
-        let told = |frame: usize| self.frames[frame].sense == Sense::ContactMade && self.frames[frame].who.is_none();
-        if word == "involving" && carry.frame.is_some_and(told) {
-            carry.preposition = Some("between");
+        if word == "involving" && self.involves(all, at, carry) {
             return true;
         }
-        // "A collision involving it and a van occurred on Elm Street".
-        let noun = placed.first.checked_sub(1).map_or("", |before| self.tokens[before].text.as_str());
-        let crash = matches!(noun, "collision" | "crash" | "contact" | "accident");
-        if word == "involving" && crash && carry.frame.is_none() && carry.main.is_none() {
-            self.verb(Sense::ContactMade, Form::Past, all, at, carry);
-            carry.preposition = Some("between");
-            return true;
-        }
-        // "the junction where Elm Street merges with Oak Street": nobody of the story does that.
         if word == "where" {
-            // "moved into the left lane, where a van was driving": in that lane.
-            let back = at - usize::from(at > 0 && matches!(all[at - 1].chunk, Chunk::Comma));
-            if let Some(Placed { chunk: Chunk::Lane(lane), first, end }) = back.checked_sub(1).map(|lane| &all[lane]) {
-                carry.lead_lane = Some((*lane, *first, *end));
-            }
-            (carry.subject, carry.frame, carry.has_verb) = (None, None, false);
-            (carry.place, carry.fresh) = (true, true);
+            begin_place(all, at, carry);
         }
         // "The Fusion" of "a red Ford Fusion".
         if token.capital
@@ -128,4 +95,55 @@ impl Parser<'_> {
         carry.stranger |= clause && !waits && begins && matches!(next, Some(Chunk::Word));
         true
     }
+
+    /// The verb that a word is which nobody knows, by what stands around it.
+    fn tells_event(&self, word: &str, all: &[Placed], at: usize, carry: &Carry) -> Option<(Sense, Form)> {
+        if self.touches_by_parts(word, all, at, carry) || self.guesses && self.may_touch(all, at, carry) {
+            return Some((Sense::Contact, Form::Past));
+        }
+        // "The AV misjudged a van's speed and turned": what it did to the van.
+        if self.does_something(all, at, carry) {
+            return Some((Sense::Other, Form::Past));
+        }
+        let form = if word.ends_with("ing") { Form::Ing } else { Form::Past };
+        self.draws_a_trailer(all, at, carry).then_some((Sense::Tow, form))
+    }
+
+    /// "about to", "in the process of": how far the next verb came.
+    fn says_how_far(&self, word: &str, placed: &Placed, next: Option<&Chunk>) -> Option<Progress> {
+        // "time to turn" is no turn; "at which time it turned" is one.
+        let waits_for = !matches!(word, "about" | "time" | "space" | "room" | "set" | "order" | "ready" | "route")
+            || matches!(next, Some(Chunk::Preposition("to" | "for")));
+        // "nudged over in order to get by": a purpose like any other.
+        let in_order = word == "order" && placed.first > 0 && self.tokens[placed.first - 1].text == "in";
+        self.lexicon.progress(word).filter(|_| waits_for && !in_order)
+    }
+
+    /// "a collision occurred involving two vans", "A collision involving it and a van occurred on Elm Street": between them.
+    fn involves(&mut self, all: &[Placed], at: usize, carry: &mut Carry) -> bool {
+        let told = |frame: usize| self.frames[frame].sense == Sense::ContactMade && self.frames[frame].who.is_none();
+        let noun = all[at].first.checked_sub(1).map_or("", |before| self.tokens[before].text.as_str());
+        let crash = matches!(noun, "collision" | "crash" | "contact" | "accident");
+        if carry.frame.is_some_and(told) {
+            carry.preposition = Some("between");
+            return true;
+        }
+        let begins = crash && carry.frame.is_none() && carry.main.is_none();
+        if begins {
+            self.verb(Sense::ContactMade, Form::Past, all, at, carry);
+            carry.preposition = Some("between");
+        }
+        begins
+    }
+}
+
+/// "the junction where Elm Street merges with Oak Street": nobody of the story does that.
+fn begin_place(all: &[Placed], at: usize, carry: &mut Carry) {
+    // "moved into the left lane, where a van was driving": in that lane.
+    let back = at - usize::from(at > 0 && matches!(all[at - 1].chunk, Chunk::Comma));
+    if let Some(Placed { chunk: Chunk::Lane(lane), first, end }) = back.checked_sub(1).map(|lane| &all[lane]) {
+        carry.lead_lane = Some((*lane, *first, *end));
+    }
+    (carry.subject, carry.frame, carry.has_verb) = (None, None, false);
+    (carry.place, carry.fresh) = (true, true);
 }

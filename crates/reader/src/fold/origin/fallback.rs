@@ -82,118 +82,183 @@ fn turns_in_before(clues: &Clues<'_>, account: &Account) -> Option<Origin> {
 /// Where the words say nothing: by zones and movement columns, which tell front on rear and little else.
 pub(super) fn by_columns(reading: &Reading<'_>, account: &Account) -> Option<Fact<Origin>> {
     let partner = account.partner.as_ref()?;
-    let sv_rear = has_zone(&account.sv, |zone| zone.is_rear());
-    let sv_front = has_zone(&account.sv, |zone| zone.is_front());
-    let cp_front = has_zone(partner, |zone| zone.is_front());
-    let cp_rear = has_zone(partner, |zone| zone.is_rear());
-    let rule = |value: Origin| Some(Fact::by_rule(value, "zones of both and the movement columns"));
     // No animal changes lanes.
-    if told(&partner.kind).is_some_and(|kind| matches!(kind.group(), KindGroup::Object | KindGroup::Animal)) {
+    let thing = |kind: Kind| matches!(kind.group(), KindGroup::Object | KindGroup::Animal);
+    if told(&partner.kind).is_some_and(thing) || is_beside_on_foot(account, partner) {
         return None;
     }
-    if is_beside_on_foot(account, partner) {
-        return None;
-    }
-    let (cp, sv) = (movement_column(reading), reading.record.sv_movement.known());
-    // Who ran a light or a sign crossed: met on its left it came from the right.
-    let ran = partner.did(Act::RunRed) || partner.did(Act::RunStop);
-    let (left, right) = (
-        has_zone(partner, |zone| matches!(zone, Z::Left | Z::RearLeft | Z::FrontLeft)),
-        has_zone(partner, |zone| matches!(zone, Z::Right | Z::RearRight | Z::FrontRight)),
-    );
-    if ran && sv_front && !sv_rear && left != right && !partner.did(Act::Turn) {
-        return rule(Origin::Cross { side: if left { LeftRight::Right } else { LeftRight::Left } });
-    }
-    match cp {
-        Some(Movement::Backing) if sv_front => return rule(Origin::Ahead),
-        Some(Movement::CrossingIntoOpposingLane | Movement::WrongWay) if sv_front && cp_front => {
-            return rule(Origin::Opposite);
+    let touch = Touch::of(reading, account, partner);
+    let origin = touch
+        .ran_across()
+        .or_else(|| touch.of_movement())
+        .or_else(|| touch.moved_over())
+        .or_else(|| touch.front_on_rear())
+        .or_else(|| touch.at_side(touch.side?))?;
+    Some(Fact::by_rule(origin, "zones of both and the movement columns"))
+}
+
+/// Where two touched, and how the columns say that they moved.
+struct Touch<'a> {
+    account: &'a Account,
+    partner: &'a Party,
+    /// Movement columns of the subject vehicle and of the partner.
+    sv: Option<Movement>,
+    cp: Option<Movement>,
+    /// Whether zones of them are at the front or at the rear.
+    sv_front: bool,
+    sv_rear: bool,
+    cp_front: bool,
+    cp_rear: bool,
+    /// The side of the subject vehicle that was touched.
+    side: Option<LeftRight>,
+    /// It was at a junction, by the column.
+    junction: bool,
+}
+
+impl<'a> Touch<'a> {
+    fn of(reading: &Reading<'_>, account: &'a Account, partner: &'a Party) -> Self {
+        Self {
+            account,
+            partner,
+            sv: reading.record.sv_movement.known(),
+            cp: movement_column(reading),
+            sv_front: has_zone(&account.sv, |zone| zone.is_front()),
+            sv_rear: has_zone(&account.sv, |zone| zone.is_rear()),
+            cp_front: has_zone(partner, |zone| zone.is_front()),
+            cp_rear: has_zone(partner, |zone| zone.is_rear()),
+            side: zone_side(account),
+            junction: reading.record.road.known() == Some(RoadType::Intersection),
         }
-        // Out of a way across, or a stall there.
-        Some(Movement::Backing) if !sv_rear || !cp_rear => {
-            let backs = told(&account.sv.state) == Some(ContactState::Reversing);
-            if let Some(side) = zone_side(account).filter(|_| !backs) {
-                return rule(Origin::Cross { side });
+    }
+
+    /// Whether no zone of the subject vehicle is its plain rear.
+    fn off_plain_rear(&self) -> bool {
+        self.account.sv.zones.iter().all(|zone| zone.value != Z::Rear)
+    }
+
+    /// Beside, on the side that was touched.
+    fn beside(&self) -> Option<Origin> {
+        self.side.map(|side| Origin::Beside { side })
+    }
+
+    /// Whether the subject vehicle went backwards.
+    fn backs(&self) -> bool {
+        told(&self.account.sv.state) == Some(ContactState::Reversing)
+    }
+
+    /// Who ran a light or a sign crossed: met on its left it came from the right.
+    fn ran_across(&self) -> Option<Origin> {
+        let ran = self.partner.did(Act::RunRed) || self.partner.did(Act::RunStop);
+        let left = has_zone(self.partner, |zone| matches!(zone, Z::Left | Z::RearLeft | Z::FrontLeft));
+        let right = has_zone(self.partner, |zone| matches!(zone, Z::Right | Z::RearRight | Z::FrontRight));
+        let across = ran && self.sv_front && !self.sv_rear && left != right && !self.partner.did(Act::Turn);
+        across.then_some(Origin::Cross { side: if left { LeftRight::Right } else { LeftRight::Left } })
+    }
+
+    /// What the movement column of the partner says by itself.
+    fn of_movement(&self) -> Option<Origin> {
+        match self.cp? {
+            Movement::Backing if self.sv_front => Some(Origin::Ahead),
+            Movement::CrossingIntoOpposingLane | Movement::WrongWay if self.sv_front && self.cp_front => {
+                Some(Origin::Opposite)
             }
+            // Out of a way across, or a stall there.
+            Movement::Backing if !self.sv_rear || !self.cp_rear => {
+                self.side.filter(|_| !self.backs()).map(|side| Origin::Cross { side })
+            }
+            Movement::Passing => self.beside().filter(|_| self.off_plain_rear()).or(Some(Origin::Behind)),
+            _ => None,
         }
-        Some(Movement::Passing) => {
-            let corner = account.sv.zones.iter().all(|zone| zone.value != Z::Rear);
-            return rule(zone_side(account).filter(|_| corner).map_or(Origin::Behind, |side| Origin::Beside { side }));
+    }
+
+    /// One of the two moved over to the other.
+    fn moved_over(&self) -> Option<Origin> {
+        if self.partner.did(Act::LaneChange) && self.side.is_some() {
+            return self.beside();
         }
-        _ => {}
-    }
-    if let (true, Some(side)) = (partner.did(Act::LaneChange), zone_side(account)) {
-        return rule(Origin::Beside { side });
-    }
-    // It moved over before one in the next lane: corner on corner.
-    let corner = !account.sv.zones.is_empty() && account.sv.zones.iter().all(|zone| zone.value != Z::Rear);
-    if let (true, true, Some(side)) = (account.sv.did(Act::LaneChange), corner && sv_rear, zone_side(account)) {
+        // It moved over before one in the next lane: corner on corner.
+        let side =
+            self.side.filter(|_| self.account.sv.did(Act::LaneChange) && self.sv_rear && self.off_plain_rear())?;
         // It went away from that side: whoever met it there had followed it.
-        let change = account.sv.acts.iter().find(|fact| fact.act == Act::LaneChange && !fact.after_contact);
-        let away = change.is_some_and(|fact| fact.side == Some(side.other())) && cp == Some(Movement::Straight);
-        return rule(if away { Origin::Behind } else { Origin::Beside { side } });
+        let change = self.account.sv.acts.iter().find(|fact| fact.act == Act::LaneChange && !fact.after_contact);
+        let away = change.is_some_and(|fact| fact.side == Some(side.other())) && self.cp == Some(Movement::Straight);
+        Some(if away { Origin::Behind } else { Origin::Beside { side } })
     }
-    if sv_rear && cp_front && !sv_front {
-        return rule(Origin::Behind);
-    }
-    // Told to touch its rear, and nothing told of the partner's own side or way.
-    let into_rear = sv_rear
-        && partner.zones.is_empty()
-        && account.sv.zones.iter().all(|zone| zone.value.is_rear() && zone.source.is_told());
-    let turns =
-        [Act::Turn, Act::UTurn, Act::Reverse, Act::LaneChange, Act::Cross].into_iter().any(|act| partner.did(act));
-    if into_rear && !turns && told(&account.sv.state) != Some(ContactState::Reversing) {
-        return rule(Origin::Behind);
-    }
-    if sv_front && cp_rear && !sv_rear {
+
+    /// The front of one touched the rear of the other.
+    fn front_on_rear(&self) -> Option<Origin> {
+        if self.sv_rear && self.cp_front && !self.sv_front || self.met_at_rear() {
+            return Some(Origin::Behind);
+        }
+        if !self.sv_front || !self.cp_rear || self.sv_rear {
+            return None;
+        }
         // Parked, it stands beside the lane that a corner leaves.
-        let corner = told(&partner.state) == Some(ContactState::Parked) && !square_front(account);
-        return rule(zone_side(account).filter(|_| corner).map_or(Origin::Ahead, |side| Origin::Beside { side }));
+        let corner = told(&self.partner.state) == Some(ContactState::Parked) && !square_front(self.account);
+        self.beside().filter(|_| corner).or(Some(Origin::Ahead))
     }
-    let side = zone_side(account)?;
-    // One way, side by side.
-    let over = |movement| {
-        matches!(
-            movement,
+
+    /// Told to touch its rear, and nothing told of the partner's own side or way.
+    fn met_at_rear(&self) -> bool {
+        let into_rear = self.sv_rear
+            && self.partner.zones.is_empty()
+            && self.account.sv.zones.iter().all(|zone| zone.value.is_rear() && zone.source.is_told());
+        let turns = [Act::Turn, Act::UTurn, Act::Reverse, Act::LaneChange, Act::Cross]
+            .into_iter()
+            .any(|act| self.partner.did(act));
+        into_rear && !turns && !self.backs()
+    }
+
+    /// By the side that was touched, and the way of both.
+    fn at_side(&self, side: LeftRight) -> Option<Origin> {
+        use Movement as M;
+        let moved_over = matches!(
+            self.cp,
             Some(
-                Movement::ChangingLanes
-                    | Movement::Merging
-                    | Movement::LaneDeparture
-                    | Movement::ParkingManeuver
-                    | Movement::EnteringTraffic
-                    | Movement::Parked
-                    | Movement::Stopped
+                M::ChangingLanes
+                    | M::Merging
+                    | M::LaneDeparture
+                    | M::ParkingManeuver
+                    | M::EnteringTraffic
+                    | M::Parked
+                    | M::Stopped
             )
-        )
-    };
-    if over(cp)
-        || matches!(sv, Some(Movement::ChangingLanes | Movement::Merging | Movement::Passing | Movement::LaneDeparture))
-    {
-        return rule(Origin::Beside { side });
+        ) || matches!(self.sv, Some(M::ChangingLanes | M::Merging | M::Passing | M::LaneDeparture));
+        // One way, side by side.
+        if moved_over {
+            return self.beside();
+        }
+        if self.junction
+            && let Some(origin) = self.in_junction(side)
+        {
+            return Some(origin);
+        }
+        let straight = |movement| matches!(movement, Some(M::Straight | M::Stopped | M::Parked));
+        self.beside().filter(|_| straight(self.cp) && straight(self.sv))
     }
-    let junction = reading.record.road.known() == Some(RoadType::Intersection);
-    if sv == Some(Movement::LeftTurn) && junction && cp == Some(Movement::Straight) && side == LeftRight::Right {
-        return rule(Origin::Opposite);
+
+    /// At a junction, of two that do not go one way.
+    fn in_junction(&self, side: LeftRight) -> Option<Origin> {
+        let both = (self.sv, self.cp);
+        if both == (Some(Movement::LeftTurn), Some(Movement::Straight)) && side == LeftRight::Right {
+            return Some(Origin::Opposite);
+        }
+        let flank =
+            |party: &Party| !party.zones.is_empty() && !has_zone(party, |zone| zone.is_front() || zone.is_rear());
+        if self.cp_front && flank(&self.account.sv) {
+            return Some(Origin::Cross { side });
+        }
+        if self.sv_front && flank(self.partner) {
+            // Its right flank is met by who comes to it from its right: it came from the left.
+            let right = has_zone(self.partner, |zone| zone == Z::Right);
+            return Some(Origin::Cross { side: if right { LeftRight::Left } else { LeftRight::Right } });
+        }
+        // Both went straight into a junction, corner on corner.
+        let corner = |party: &Party| !party.zones.is_empty() && party.zones.iter().all(|zone| zone.value.is_front());
+        let straight = both == (Some(Movement::Straight), Some(Movement::Straight));
+        let lanes = self.account.sv.lane.is_some() || self.partner.lane.is_some();
+        (straight && corner(&self.account.sv) && corner(self.partner) && !lanes).then_some(Origin::Cross { side })
     }
-    let flank = |party: &Party| !party.zones.is_empty() && !has_zone(party, |zone| zone.is_front() || zone.is_rear());
-    if junction && cp_front && flank(&account.sv) {
-        return rule(Origin::Cross { side });
-    }
-    if junction && sv_front && flank(partner) {
-        // Its right flank is met by who comes to it from its right: it came from the left.
-        let right = has_zone(partner, |zone| zone == Z::Right);
-        return rule(Origin::Cross { side: if right { LeftRight::Left } else { LeftRight::Right } });
-    }
-    // Both went straight into a junction, corner on corner.
-    let corner = |party: &Party| !party.zones.is_empty() && party.zones.iter().all(|zone| zone.value.is_front());
-    let both = (sv, cp) == (Some(Movement::Straight), Some(Movement::Straight));
-    let lanes = account.sv.lane.is_some() || partner.lane.is_some();
-    if junction && both && corner(&account.sv) && corner(partner) && !lanes {
-        return rule(Origin::Cross { side });
-    }
-    let straight = |movement| matches!(movement, Some(Movement::Straight | Movement::Stopped | Movement::Parked));
-    (straight(cp) && straight(sv))
-        .then(|| Fact::by_rule(Origin::Beside { side }, "zones of both and the movement columns"))
 }
 
 /// Which side of the subject vehicle was touched.
