@@ -119,53 +119,91 @@ pub(super) fn check(
     if !is_device {
         return (CheckResult::NotShown, "another device".to_owned());
     }
-    let time_s = passage.crossed_s.unwrap_or(contact_s);
-    let shows = |at_s: f64| control.device.aspect(at_s);
-    let just = |was: &[Aspect]| {
-        let back = |tenth: i32| shows((contact_s - 0.1 * f64::from(tenth)).max(0.0));
-        (0..=(JUST_S * 10.0) as i32).any(|tenth| back(tenth).is_some_and(|seen| was.contains(&seen)))
-    };
-    let stood = &passage.stands_s;
-    let waited = stood.is_empty() || stood.iter().any(|at_s| shows(*at_s) != Some(Aspect::Green));
-    let state = match said.state {
-        None => true,
-        Some(SignalState::Red) => {
-            [Some(time_s), passage.stood_s].into_iter().flatten().any(|at_s| shows(at_s) == Some(Aspect::Red))
-        }
-        Some(SignalState::Green) => shows(time_s) == Some(Aspect::Green),
-        // It turned so before who stops for it came to a stand.
-        Some(SignalState::Yellow) if stops_at_yellow && passage.crossed_s.is_none() => {
-            let from_s = stood.last().map_or(contact_s, |at_s| at_s - STEP_S);
-            let back = |tenth: i32| shows((from_s - 0.1 * f64::from(tenth)).max(0.0));
-            waited && (0..=(YELLOW_S * 10.0) as i32).any(|tenth| back(tenth) == Some(Aspect::Yellow))
-        }
-        Some(SignalState::Yellow) => shows(time_s) == Some(Aspect::Yellow),
-        Some(SignalState::TurnedGreen) => shows(contact_s) == Some(Aspect::Green) && just(&[Aspect::Red]) && waited,
-        Some(SignalState::TurnedRed) => {
-            shows(contact_s) == Some(Aspect::Red) && just(&[Aspect::Green, Aspect::Yellow]) && waited
-        }
-    };
-    let kept = match control.device {
-        Device::StopSign {} => passage.crossed_s.is_none() || passage.stood_s.is_some(),
-        Device::YieldSign {} => passage.crossed_s.is_none_or(|at_s| passage.stood_s.is_some() || slowed(track, at_s)),
-        Device::Signal { .. } => {
-            let at_red = at_red.filter(|_| passage.stood_s.is_some_and(|at_s| shows(at_s) == Some(Aspect::Red)));
-            let may = at_red.is_some_and(|how| how == AtRed::Turns || passage.past_m < CREEPS_M);
-            may || passage.crossed_s.is_none_or(|at_s| shows(at_s) != Some(Aspect::Red))
-        }
-    };
+    let met = Met { device: &control.device, passage, contact_s };
+    let (time_s, kept) = (met.time_s(), met.keeps(at_red, track));
     let obeyed = match said.obeyed {
         None => true,
         Some(Obeyed::Yes) => kept,
         Some(Obeyed::No) => !kept,
     };
-    let color = shows(time_s).map_or(String::new(), |aspect| format!("{} ", aspect.label()));
-    let did = match passage.crossed_s {
+    let color = met.shows(time_s).map_or(String::new(), |aspect| format!("{} ", aspect.label()));
+    let did = match met.passage.crossed_s {
         None => "it stayed before the line".to_owned(),
         Some(at_s) => format!("it crossed the line at {at_s:.1} s"),
     };
-    let result = if state && obeyed { CheckResult::Shown } else { CheckResult::NotShown };
+    let shown = obeyed && said.state.is_none_or(|state| met.showed(state, stops_at_yellow));
+    let result = if shown { CheckResult::Shown } else { CheckResult::NotShown };
     (result, format!("{color}at {time_s:.1} s, {did}"))
+}
+
+/// A signal or a sign, how somebody came by its line, and when the two touch. [s]
+struct Met<'a> {
+    device: &'a Device,
+    passage: Passage,
+    contact_s: f64,
+}
+
+impl Met<'_> {
+    /// When it came over the line; at the contact it is before that. [s]
+    fn time_s(&self) -> f64 {
+        self.passage.crossed_s.unwrap_or(self.contact_s)
+    }
+
+    fn shows(&self, at_s: f64) -> Option<Aspect> {
+        self.device.aspect(at_s)
+    }
+
+    /// Whether the light showed one of these then, or within a time before.
+    fn showed_within(&self, until_s: f64, within_s: f64, of: &[Aspect]) -> bool {
+        let back = |tenth: i32| self.shows((until_s - 0.1 * f64::from(tenth)).max(0.0));
+        (0..=(within_s * 10.0) as i32).any(|tenth| back(tenth).is_some_and(|seen| of.contains(&seen)))
+    }
+
+    /// Whether it came to a stand, where it did, when the light was not green.
+    fn waited(&self) -> bool {
+        let stood = &self.passage.stands_s;
+        stood.is_empty() || stood.iter().any(|at_s| self.shows(*at_s) != Some(Aspect::Green))
+    }
+
+    /// Whether the light showed what is told of it.
+    fn showed(&self, state: SignalState, stops_at_yellow: bool) -> bool {
+        let (passage, contact_s) = (&self.passage, self.contact_s);
+        let just = |was: &[Aspect]| self.showed_within(contact_s, JUST_S, was) && self.waited();
+        match state {
+            SignalState::Red => {
+                let times = [Some(self.time_s()), passage.stood_s].into_iter().flatten();
+                times.into_iter().any(|at_s| self.shows(at_s) == Some(Aspect::Red))
+            }
+            SignalState::Green => self.shows(self.time_s()) == Some(Aspect::Green),
+            // It turned so before who stops for it came to a stand.
+            SignalState::Yellow if stops_at_yellow && passage.crossed_s.is_none() => {
+                let from_s = passage.stands_s.last().map_or(contact_s, |at_s| at_s - STEP_S);
+                self.waited() && self.showed_within(from_s, YELLOW_S, &[Aspect::Yellow])
+            }
+            SignalState::Yellow => self.shows(self.time_s()) == Some(Aspect::Yellow),
+            SignalState::TurnedGreen => self.shows(contact_s) == Some(Aspect::Green) && just(&[Aspect::Red]),
+            SignalState::TurnedRed => {
+                self.shows(contact_s) == Some(Aspect::Red) && just(&[Aspect::Green, Aspect::Yellow])
+            }
+        }
+    }
+
+    /// Whether it obeyed the signal or the sign: at red, as who stood there may come over the line.
+    fn keeps(&self, at_red: Option<AtRed>, track: &ActorTrack) -> bool {
+        let passage = &self.passage;
+        match self.device {
+            Device::StopSign {} => passage.crossed_s.is_none() || passage.stood_s.is_some(),
+            Device::YieldSign {} => {
+                passage.crossed_s.is_none_or(|at_s| passage.stood_s.is_some() || slowed(track, at_s))
+            }
+            Device::Signal { .. } => {
+                let stood_at_red = passage.stood_s.is_some_and(|at_s| self.shows(at_s) == Some(Aspect::Red));
+                let at_red = at_red.filter(|_| stood_at_red);
+                let may = at_red.is_some_and(|how| how == AtRed::Turns || passage.past_m < CREEPS_M);
+                may || passage.crossed_s.is_none_or(|at_s| self.shows(at_s) != Some(Aspect::Red))
+            }
+        }
+    }
 }
 
 /// Whether who crosses a line then had slowed for it.

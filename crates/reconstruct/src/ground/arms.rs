@@ -55,7 +55,7 @@ fn off_street(told: &Told) -> Option<&'static str> {
 }
 
 /// The one into which the ego turns.
-const fn exit(told: &Told) -> Option<&'static str> {
+pub(super) const fn exit(told: &Told) -> Option<&'static str> {
     match told.sv.turning {
         Turning::Left => Some(LEFT),
         Turning::Right => Some(RIGHT),

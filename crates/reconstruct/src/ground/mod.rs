@@ -5,4 +5,5 @@ pub(crate) mod drawn;
 mod junction;
 mod lanes;
 pub(crate) mod pieces;
+mod places;
 pub(crate) mod way;

@@ -14,6 +14,9 @@ use recrash_model::rollout::ActorTrack;
 use recrash_model::scenario::{Actor, StripKind};
 use recrash_model::vehicle::VehicleSpec;
 
+/// Where nobody tells the side, in this order.
+const SIDES: [LeftRight; 2] = [LeftRight::Left, LeftRight::Right];
+
 impl<'a> Scene<'a> {
     pub(super) fn actors(&self, extra: &Extra) -> Vec<Actor> {
         let kind = extra.kind.partner_kind().unwrap_or(PartnerKind::PassengerCar);
@@ -38,106 +41,128 @@ impl<'a> Scene<'a> {
         ways.into_iter().map(actor).collect()
     }
 
+    /// On wheels, by what it does; where that is no more than to drive or to stand, by where it is.
     fn drives(&self, near: Near, length_m: f64) -> Vec<Way> {
         let half_m = 0.5 * length_m;
-        let (left, right) = (LeftRight::Left, LeftRight::Right);
-        let stands = near.does == Does::Stands;
-        let untold = near.does == Does::Untold;
-        // Who is told to stand in a lane is at no kerb.
-        let at_kerb = |side| if near.in_lane { Vec::new() } else { self.kerb(side, half_m) };
-        let mut list = Vec::new();
-        match near.place {
-            _ if near.does == Does::TurnsLeft => list.extend(self.turners()),
-            _ if near.does == Does::Backs => list.extend(self.backers(near.place, half_m)),
-            _ if let Does::Changes(side) = near.does => list.extend(self.changers(near.place, side, half_m)),
-            _ if let Does::Turns(side) = near.does => list.extend(self.turning(near.place, side)),
-            _ if let Does::GoesAside(side) = near.does => list.extend(self.aside(near, side, half_m)),
-            _ if let Does::PullsOver(side) = near.does => {
-                list.extend(self.aside(near, side.or(Some(LeftRight::Right)), half_m));
-            }
-            _ if near.does == Does::PullsOut => list.extend(self.pulling_out(near.place, half_m)),
-            _ if near.does == Does::Passes => {
-                let ways = || self.passers(near.place, half_m).into_iter();
-                if let Some(Does::GoesAside(Some(side))) = near.also {
-                    list.extend(
-                        [OVER_M, ASIDE_M].into_iter().flat_map(|by_m| ways().map(move |way| way.aside(side, by_m))),
-                    );
-                }
-                list.extend(ways());
-            }
-            Some(Origin::Opposite) if near.first == First::Gone => list.extend(self.gone_by()),
-            Some(Origin::Opposite) => {
-                if !stands {
-                    list.extend(self.oncoming(half_m));
-                }
-                if near.does == Does::Slows {
-                    list.extend(self.waits_opposite(half_m).iter().map(|way| self.coming_to(way)));
-                }
-                list.extend(self.comes_or_stands(near, self.waits_opposite(half_m)));
-                if !stands {
-                    list.extend(self.oncoming_beyond());
-                }
-            }
-            Some(Origin::Ahead) => {
-                list.extend(self.loses(half_m));
-                if near.does == Does::Drives && self.ego_moves_off() {
-                    list.extend(self.setting_off(half_m));
-                }
-                if !stands {
-                    list.extend(self.leads_round(half_m));
-                }
-                list.extend(self.comes_or_stands(near, self.stands_ahead(half_m, 0.0)));
-            }
-            Some(Origin::Behind) => list.extend(self.follows(half_m)),
-            Some(Origin::Beside { side }) => {
-                if !stands {
-                    list.extend(self.beside(side));
-                }
-                // Where no lane is beside the ego's one stands at the kerb.
-                let lane = self.lies_in_lane(self.beside_m(side, self.until));
-                let (first, last) = (self.stands_beside(side, half_m), at_kerb(side));
-                let (first, last) = if lane { (first, last) } else { (last, first) };
-                list.extend(first.into_iter().chain(last));
-            }
-            Some(Origin::Cross { side }) => list.extend(self.crosses(side, near.does, half_m)),
-            _ if near.across => {
-                list.extend(self.crosses(left, near.does, half_m));
-                list.extend(self.crosses(right, near.does, half_m));
-            }
-            _ => {
-                // Traffic beside an ego that comes out of a space is in the lanes into which that goes.
-                let comes_out = self.told.sv_aside().is_some_and(|aside| aside.from_t_m != 0.0);
-                if untold && comes_out {
-                    list.extend(self.passers(None, half_m));
-                }
-                if !stands {
-                    list.extend(self.oncoming(half_m));
-                    list.extend(self.leads(half_m));
-                    list.extend(self.beside(left));
-                    list.extend(self.beside(right));
-                    list.extend(self.crosses(left, Does::Drives, half_m));
-                    list.extend(self.crosses(right, Does::Drives, half_m));
-                }
-                if stands {
-                    list.extend(at_kerb(left));
-                    list.extend(at_kerb(right));
-                    list.extend(self.stands_somewhere(half_m));
-                }
-                if untold {
-                    list.extend(at_kerb(left));
-                    list.extend(at_kerb(right));
-                    list.extend(self.waits_opposite(half_m));
-                    list.extend(self.stands_somewhere_beside(left, half_m));
-                    list.extend(self.stands_somewhere_beside(right, half_m));
-                    list.extend(self.crosses(left, Does::Stands, half_m));
-                    list.extend(self.crosses(right, Does::Stands, half_m));
-                    list.extend(self.stands_ahead(half_m, STANDS_AHEAD_M));
-                }
-            }
-        }
+        let mut list = self.does(near, half_m).unwrap_or_else(|| self.is_there(near, half_m));
         for way in &mut list {
             let slows = matches!(near.does, Does::Slows | Does::PullsOver(_));
             way.slows = slows && way.speed_mps > SLOWS_BY_MPS && way.stops_m.is_none();
+        }
+        list
+    }
+
+    /// Who does more than to drive or to stand.
+    fn does(&self, near: Near, half_m: f64) -> Option<Vec<Way>> {
+        Some(match near.does {
+            Does::TurnsLeft => self.turners(),
+            Does::Backs => self.backers(near.place, half_m),
+            Does::Changes(side) => self.changers(near.place, side, half_m),
+            Does::Turns(side) => self.turning(near.place, side),
+            Does::GoesAside(side) => self.aside(near, side, half_m),
+            Does::PullsOver(side) => self.aside(near, side.or(Some(LeftRight::Right)), half_m),
+            Does::PullsOut => self.pulling_out(near.place, half_m),
+            Does::Passes => self.passing(near, half_m),
+            Does::Untold | Does::Drives | Does::Slows | Does::Stands | Does::Crosses => return None,
+        })
+    }
+
+    /// Who drives or stands where it is told.
+    fn is_there(&self, near: Near, half_m: f64) -> Vec<Way> {
+        match near.place {
+            Some(Origin::Opposite) if near.first == First::Gone => self.gone_by(),
+            Some(Origin::Opposite) => self.opposite(near, half_m),
+            Some(Origin::Ahead) => self.ahead(near, half_m),
+            Some(Origin::Behind) => self.follows(half_m),
+            Some(Origin::Beside { side }) => self.at_side(near, side, half_m),
+            Some(Origin::Cross { side }) => self.crosses(side, near.does, half_m),
+            _ if near.across => SIDES.into_iter().flat_map(|side| self.crosses(side, near.does, half_m)).collect(),
+            _ => self.anywhere(near, half_m),
+        }
+    }
+
+    /// Comes by from behind; over in its lane first, where that is told with it.
+    fn passing(&self, near: Near, half_m: f64) -> Vec<Way> {
+        let ways = self.passers(near.place, half_m);
+        let mut list = Vec::new();
+        if let Some(Does::GoesAside(Some(side))) = near.also {
+            let over = |by_m: f64| ways.iter().map(move |way| way.clone().aside(side, by_m));
+            list.extend([OVER_M, ASIDE_M].into_iter().flat_map(over));
+        }
+        list.extend(ways);
+        list
+    }
+
+    /// In a lane towards the ego.
+    fn opposite(&self, near: Near, half_m: f64) -> Vec<Way> {
+        let moves = near.does != Does::Stands;
+        let mut list = Vec::new();
+        if moves {
+            list.extend(self.oncoming(half_m));
+        }
+        if near.does == Does::Slows {
+            list.extend(self.waits_opposite(half_m).iter().map(|way| self.coming_to(way)));
+        }
+        list.extend(self.comes_or_stands(near, self.waits_opposite(half_m)));
+        if moves {
+            list.extend(self.oncoming_beyond());
+        }
+        list
+    }
+
+    fn ahead(&self, near: Near, half_m: f64) -> Vec<Way> {
+        let mut list: Vec<Way> = self.loses(half_m).into_iter().collect();
+        if near.does == Does::Drives && self.ego_moves_off() {
+            list.extend(self.setting_off(half_m));
+        }
+        if near.does != Does::Stands {
+            list.extend(self.leads_round(half_m));
+        }
+        list.extend(self.comes_or_stands(near, self.stands_ahead(half_m, 0.0)));
+        list
+    }
+
+    /// Beside the ego; where no lane is there one stands at the kerb.
+    fn at_side(&self, near: Near, side: LeftRight, half_m: f64) -> Vec<Way> {
+        let moves = near.does != Does::Stands;
+        let mut list = if moves { self.beside(side) } else { Vec::new() };
+        let (in_lane, at_kerb) = (self.stands_beside(side, half_m), self.at_kerb(near, side, half_m));
+        let lane = self.lies_in_lane(self.beside_m(side, self.until));
+        let (first, last) = if lane { (in_lane, at_kerb) } else { (at_kerb, in_lane) };
+        list.extend(first.into_iter().chain(last));
+        list
+    }
+
+    /// Parked at a kerb: not who is told to stand in a lane.
+    fn at_kerb(&self, near: Near, side: LeftRight, half_m: f64) -> Vec<Way> {
+        if near.in_lane { Vec::new() } else { self.kerb(side, half_m) }
+    }
+
+    /// Who drives or stands, and nobody tells where.
+    fn anywhere(&self, near: Near, half_m: f64) -> Vec<Way> {
+        let (stands, untold) = (near.does == Does::Stands, near.does == Does::Untold);
+        let at_kerbs = || SIDES.into_iter().flat_map(|side| self.at_kerb(near, side, half_m));
+        let crosses = |does: Does| SIDES.into_iter().flat_map(move |side| self.crosses(side, does, half_m));
+        let mut list = Vec::new();
+        // Traffic beside an ego that comes out of a space is in the lanes into which that goes.
+        if untold && self.told.sv_aside().is_some_and(|aside| aside.from_t_m != 0.0) {
+            list.extend(self.passers(None, half_m));
+        }
+        if stands {
+            list.extend(at_kerbs());
+            list.extend(self.stands_somewhere(half_m));
+        } else {
+            list.extend(self.oncoming(half_m));
+            list.extend(self.leads(half_m));
+            list.extend(SIDES.into_iter().flat_map(|side| self.beside(side)));
+            list.extend(crosses(Does::Drives));
+        }
+        if untold {
+            list.extend(at_kerbs());
+            list.extend(self.waits_opposite(half_m));
+            list.extend(SIDES.into_iter().flat_map(|side| self.stands_somewhere_beside(side, half_m)));
+            list.extend(crosses(Does::Stands));
+            list.extend(self.stands_ahead(half_m, STANDS_AHEAD_M));
         }
         list
     }

@@ -53,7 +53,7 @@ fn usual_paces(told: &Told, staging: &Staging) -> (Option<Lead>, Pace) {
         .or_else(|| cross_from_stalls(told, staging))
         .or_else(|| beside::from_kerb(told, staging))
         .or_else(|| beside::runs_out(told, staging))
-        .unwrap_or_else(|| partner_pace(told, staging, (&ego, ego_m, before_s)));
+        .unwrap_or_else(|| partner_pace(told, staging, &EgoWay { pace: &ego, driven_m: ego_m, before_s }));
     // Who stands behind an ego that came along, stood and backs came along behind it.
     let came_m = ego_lead.as_ref().filter(|lead| lead.speed_mps > 0.0 && backs_last).map(Lead::driven_m);
     let came_m = came_m.map(|came_m| came_m - ego.driven_m + CAME_BEHIND_M);
@@ -87,86 +87,37 @@ fn usual_paces(told: &Told, staging: &Staging) -> (Option<Lead>, Pace) {
     }
 }
 
+/// What the ego does until the contact: its last pace, how far it drives in all, and when it begins what the partner backs before. [m, s]
+struct EgoWay<'a> {
+    pace: &'a Pace,
+    driven_m: f64,
+    before_s: Option<f64>,
+}
+
 /// How the partner's speed comes to what it is at the contact, from its last stand where it stood.
-fn partner_pace(told: &Told, staging: &Staging, (ego, ego_m, before_s): (&Pace, f64, Option<f64>)) -> Pace {
-    let (cp, contact_s) = (&told.cp, told.contact_s);
-    let usual = last_pace(told);
-    if told.waits_behind() && told.sv.state == ContactState::Moving && ego.speed_mps == 0.0 {
-        let ego_s = contact_s - first_time(&ego.acts);
-        if let Some(pace) = start_after(contact_s, cp.speed_mps, ego_m + BEHIND_M, ego_s - FOLLOWS_S) {
-            return pace;
-        }
-    }
-    // Who waited behind an ego that has come into the junction since stood behind where that did.
-    let moved_up = told.sv.phases == [Phase::Stands, Phase::Drives, Phase::Stands] && told.sv.enters();
-    if told.waits_behind()
-        && moved_up
-        && cp.state != ContactState::Reversing
-        && let Some(pace) = start_over(contact_s, cp.speed_mps, ego_m + BEHIND_M)
-    {
+fn partner_pace(told: &Told, staging: &Staging, ego: &EgoWay<'_>) -> Pace {
+    if let Some(pace) = sets_off_behind(told, ego) {
         return pace;
     }
-    let same_way = matches!(told.origin, Origin::Behind | Origin::Ahead);
-    let follows = matches!(told.origin, Origin::Behind | Origin::Beside { .. });
-    // Who stood has not come along behind it; nor has whom the ego passes.
-    let passed = told.sv.acts.iter().any(Doing::is_pass);
-    let follows = follows && told.ahead != Some(true) && !told.sv.reacts && !cp.stood_first && !passed;
+    let (cp, contact_s, usual) = (&told.cp, told.contact_s, last_pace(told));
+    let ahead = told.origin == Origin::Ahead && usual.driven_m > ego.driven_m - 0.3;
     let enters = cp.movement == Some(Movement::EnteringTraffic);
     match cp.state {
-        ContactState::Moving if told.gives_way_to_merge && cp.speed_mps < ego.speed_mps - 1.0 => {
-            slows_abreast(contact_s, cp.speed_mps, ego)
+        ContactState::Moving if told.gives_way_to_merge && cp.speed_mps < ego.pace.speed_mps - 1.0 => {
+            slows_abreast(contact_s, cp.speed_mps, ego.pace)
         }
         ContactState::Moving if told.brakes_late() => slows(contact_s, cp),
-        // It slows with the ego that it follows.
-        ContactState::Moving if told.sv.slowed_from.is_some() && follows && usual.driven_m < ego_m + 5.0 => {
-            let from_mps = (ego.speed_mps + FOLLOWS_BY_MPS).max(cp.speed_mps);
-            // It brakes after the ego does.
-            let braking_s = (contact_s - first_time(&ego.acts) - BRAKES_LATER_S).max(LEAST_BRAKING_S);
-            let brake =
-                Deed::Speed { to_mps: cp.speed_mps, rate_mps2: ((from_mps - cp.speed_mps) / braking_s).max(0.05) };
-            let driven_m = from_mps * (contact_s - braking_s) + 0.5 * (from_mps + cp.speed_mps) * braking_s;
-            Pace { speed_mps: from_mps, acts: vec![when(contact_s - braking_s, brake)], driven_m }
+        ContactState::Moving if told.slows_as_ego_does() && usual.driven_m < ego.driven_m + 5.0 => {
+            slows_with(ego.pace, contact_s, cp.speed_mps)
         }
         // Who is ahead and slower has not come from behind the ego: it has just set off.
-        ContactState::Moving if same_way && told.origin == Origin::Ahead && usual.driven_m > ego_m - 0.3 => {
-            sets_off(contact_s, cp.speed_mps, (0.8 * ego_m).max(0.2))
-        }
+        ContactState::Moving if ahead => sets_off(contact_s, cp.speed_mps, (0.8 * ego.driven_m).max(0.2)),
         ContactState::Reversing => {
-            let turn = math::wrap_angle(staging.cp.heading - staging.cp_came).abs();
-            let swings = turn > SWINGS_RAD;
-            let way_m = match told.origin {
-                _ if cp.backs_in => BACKS_IN_M,
-                Origin::Stall { .. } => beside::out_m(told, staging).max(LEAST_OUT_M).max(LEAST_BACK_M * turn),
-                Origin::Driveway { .. } => beside::out_m(told, staging).max(BACKS_OUT_M),
-                // It has no more time for that.
-                _ if told.backs_late && !cp.phases.is_empty() => SWINGS_LATE_M,
-                _ if swings && !cp.phases.is_empty() => SWINGS_BACK_M.max(LEAST_BACK_M * turn),
-                _ => REVERSES_M.max(LEAST_BACK_M * turn),
-            };
-            // Who backed before the ego did something backs for longer.
-            let backing_s = before_s.map_or(0.0, |from_s| contact_s - from_s + BACKS_EARLIER_S);
-            let longer_m = cp.speed_mps * (backing_s - 0.5 * cp.speed_mps / SETS_OFF_MPS2);
-            // Nobody stood deeper than in its stall.
-            let most_m = match told.origin {
-                Origin::Stall { .. } => way_m.max(beside::out_m(told, staging) + IN_STALL_M),
-                _ => f64::INFINITY,
-            };
-            start_over(contact_s, cp.speed_mps, way_m.max(longer_m).min(most_m)).unwrap_or(usual)
+            start_over(contact_s, cp.speed_mps, backs_m(told, staging, ego.before_s)).unwrap_or(usual)
         }
         // Who comes from the kerb or out of a stall stood there.
         ContactState::Moving if told.stood_beside() || enters && from_stand(told) => {
-            let way_m = match told.origin {
-                Origin::Driveway { .. } => beside::out_m(told, staging).max(PULL_OUT_M),
-                // It has come no farther than out of its stall, but where it gains speed, or turns, on that.
-                Origin::Stall { .. } => {
-                    let turn = math::wrap_angle(staging.cp.heading - staging.cp_came).abs();
-                    let gains_m = 0.5 * cp.speed_mps * cp.speed_mps / NOSES_OUT_MPS2;
-                    let aside_m = if cp.aside.is_some() { ASIDE_OUT_M } else { 0.0 };
-                    beside::out_m(told, staging).max(gains_m).max(LEAST_BACK_M * turn).max(aside_m)
-                }
-                _ => PULL_OUT_M,
-            };
-            let moving_s = (2.0 * way_m / cp.speed_mps * 10.0).round() / 10.0;
+            let moving_s = (2.0 * out_m(told, staging) / cp.speed_mps * 10.0).round() / 10.0;
             let go = Deed::Speed { to_mps: cp.speed_mps, rate_mps2: cp.speed_mps / moving_s };
             Pace { speed_mps: 0.0, acts: vec![when(contact_s - moving_s, go)], driven_m: 0.5 * cp.speed_mps * moving_s }
         }
@@ -176,7 +127,7 @@ fn partner_pace(told: &Told, staging: &Staging, (ego, ego_m, before_s): (&Pace, 
                 turn_from_line_m(told, staging).and_then(|way_m| start_over(contact_s, cp.speed_mps, way_m));
             from_line.or_else(|| start_over(contact_s, cp.speed_mps, TURNS_M)).unwrap_or(usual)
         }
-        ContactState::Stopped if told.origin == Origin::Ahead && usual.driven_m > ego_m - 0.3 => STANDING,
+        ContactState::Stopped if ahead => STANDING,
         // It stood before the story begins.
         ContactState::Stopped if cp.stands_from_start && told.origin != Origin::Behind => STANDING,
         // Who sets off has room to leave its line.
@@ -186,6 +137,74 @@ fn partner_pace(told: &Told, staging: &Staging, (ego, ego_m, before_s): (&Pace, 
             more.unwrap_or(usual)
         }
         _ => usual,
+    }
+}
+
+/// Who waited behind the ego sets off after it, from behind where it stood.
+fn sets_off_behind(told: &Told, ego: &EgoWay<'_>) -> Option<Pace> {
+    let (cp, contact_s, way_m) = (&told.cp, told.contact_s, ego.driven_m + BEHIND_M);
+    if !told.waits_behind() {
+        return None;
+    }
+    let follows = told.sv.state == ContactState::Moving && ego.pace.speed_mps == 0.0;
+    let ego_s = contact_s - first_time(&ego.pace.acts);
+    let after = follows.then(|| start_after(contact_s, cp.speed_mps, way_m, ego_s - FOLLOWS_S)).flatten();
+    // Behind one that has come into the junction since it stood behind where that did.
+    let moved_up = told.sv.phases == [Phase::Stands, Phase::Drives, Phase::Stands] && told.sv.enters();
+    let comes = moved_up && cp.state != ContactState::Reversing;
+    after.or_else(|| comes.then(|| start_over(contact_s, cp.speed_mps, way_m)).flatten())
+}
+
+/// Slows with an ego that it follows, and brakes after that does.
+fn slows_with(ego: &Pace, contact_s: f64, to_mps: f64) -> Pace {
+    let from_mps = (ego.speed_mps + FOLLOWS_BY_MPS).max(to_mps);
+    let braking_s = (contact_s - first_time(&ego.acts) - BRAKES_LATER_S).max(LEAST_BRAKING_S);
+    let brake = Deed::Speed { to_mps, rate_mps2: ((from_mps - to_mps) / braking_s).max(0.05) };
+    let driven_m = from_mps * (contact_s - braking_s) + 0.5 * (from_mps + to_mps) * braking_s;
+    Pace { speed_mps: from_mps, acts: vec![when(contact_s - braking_s, brake)], driven_m }
+}
+
+/// By how much the partner has turned since it left its line. [rad]
+fn turned_rad(staging: &Staging) -> f64 {
+    math::wrap_angle(staging.cp.heading - staging.cp_came).abs()
+}
+
+/// How far a partner has backed at the contact: out of where it stood, and for longer where it began to before the ego did something. [m]
+fn backs_m(told: &Told, staging: &Staging, before_s: Option<f64>) -> f64 {
+    let cp = &told.cp;
+    let turn = turned_rad(staging);
+    let swings = turn > SWINGS_RAD;
+    let way_m = match told.origin {
+        _ if cp.backs_in => BACKS_IN_M,
+        Origin::Stall { .. } => beside::out_m(told, staging).max(LEAST_OUT_M).max(LEAST_BACK_M * turn),
+        Origin::Driveway { .. } => beside::out_m(told, staging).max(BACKS_OUT_M),
+        // It has no more time for that.
+        _ if told.backs_late && !cp.phases.is_empty() => SWINGS_LATE_M,
+        _ if swings && !cp.phases.is_empty() => SWINGS_BACK_M.max(LEAST_BACK_M * turn),
+        _ => REVERSES_M.max(LEAST_BACK_M * turn),
+    };
+    let backing_s = before_s.map_or(0.0, |from_s| told.contact_s - from_s + BACKS_EARLIER_S);
+    let longer_m = cp.speed_mps * (backing_s - 0.5 * cp.speed_mps / SETS_OFF_MPS2);
+    // Nobody stood deeper than in its stall.
+    let most_m = match told.origin {
+        Origin::Stall { .. } => way_m.max(beside::out_m(told, staging) + IN_STALL_M),
+        _ => f64::INFINITY,
+    };
+    way_m.max(longer_m).min(most_m)
+}
+
+/// How far a partner has driven at the contact out of where it stood beside the lanes. [m]
+fn out_m(told: &Told, staging: &Staging) -> f64 {
+    let cp = &told.cp;
+    match told.origin {
+        Origin::Driveway { .. } => beside::out_m(told, staging).max(PULL_OUT_M),
+        // It has come no farther than out of its stall, but where it gains speed, or turns, on that.
+        Origin::Stall { .. } => {
+            let gains_m = 0.5 * cp.speed_mps * cp.speed_mps / NOSES_OUT_MPS2;
+            let aside_m = if cp.aside.is_some() { ASIDE_OUT_M } else { 0.0 };
+            beside::out_m(told, staging).max(gains_m).max(LEAST_BACK_M * turned_rad(staging)).max(aside_m)
+        }
+        _ => PULL_OUT_M,
     }
 }
 
@@ -319,6 +338,13 @@ impl Told {
             && self.cp.phases.is_empty()
             && self.sv.state.stands()
             && slow
+    }
+
+    /// Whether the partner slows with an ego that it follows, or is beside: not who stood, nor whom the ego passes, has come along behind it.
+    fn slows_as_ego_does(&self) -> bool {
+        let follows = matches!(self.origin, Origin::Behind | Origin::Beside { .. }) && self.ahead != Some(true);
+        let passed = self.sv.acts.iter().any(Doing::is_pass);
+        self.sv.slowed_from.is_some() && follows && !self.sv.reacts && !self.cp.stood_first && !passed
     }
 
     /// The pace of what falls off the vehicle ahead: it comes along as fast as the ego, and slides.

@@ -30,43 +30,8 @@ impl Told {
         }
         self.sv.dodges = (drives_on(&self.sv) || self.sv.stopped_aside.is_some()) && self.sv_aside().is_some();
         self.cp.dodges = drives_on(&self.cp) && self.cp_from_left_m().is_some();
-        let along = matches!(self.origin, Origin::Ahead | Origin::Behind | Origin::Beside { .. });
-        if self.cp.state == ContactState::Reversing && along {
-            let before = |fact: &&ActFact| !fact.after_contact && !fact.begun;
-            let reversed =
-                partner.acts.iter().filter(before).find(|fact| fact.act == Act::Reverse).map(|fact| fact.step);
-            let swing = |fact: &&ActFact| matches!(fact.act, Act::Turn | Act::Drift | Act::Swerve);
-            let last = partner.acts.iter().filter(before).rfind(swing);
-            // Who backs into a stall of a lot swings round for it.
-            let lot = matches!(self.place, PlaceKind::ParkingLot | PlaceKind::Garage);
-            let parks = (lot && partner.did(Act::Park)).then_some(Slant::Swung);
-            let swings = last.and_then(|fact| match Some(fact.step) >= reversed {
-                true => Some(Slant::Swung),
-                false => {
-                    (fact.act == Act::Turn).then_some(Slant::Stood { side: fact.side, oncoming: faces(sv, partner) })
-                }
-            });
-            self.cp.slants = swings.or(parks);
-        }
-        // Who reverses out of the crossing road came along the ego's, turned into that, and stood there.
-        if let (ContactState::Reversing, Origin::Cross { side }) = (self.cp.state, self.origin)
-            && let Some(turned) = turned_off(partner)
-        {
-            self.cp.slants = Some(Slant::Stood { side: Some(turned), oncoming: turned != side });
-        }
-        // Who meets a thing after a turn may be in it yet; not what lies across where it turned into.
-        if self.thing.is_some() && !self.at_entrance && self.sv.movement == Some(Movement::Straight) {
-            self.sv.turned = false;
-        }
-        // Who comes from a side of an ego that drove into another junction after its turn does so from that side of its new road: one junction
-        // is drawn, and the turn is not.
-        let crosses = matches!(self.origin, Origin::Cross { .. });
-        if self.sv.turned && self.sv.movement == Some(Movement::Straight) && crosses && enters_after_turn(sv) {
-            (self.sv.turning, self.sv.turned) = (Turning::No, false);
-        }
-        if lies_before_turn(self, sv) {
-            (self.sv.turning, self.sv.turns_later) = (Turning::No, true);
-        }
+        self.cp.slants = self.slants(sv, partner);
+        self.turns_over(sv);
         self.turns_later_unsaid(sv);
         // Who runs into the rear of who turns, or waits to, ahead of it has yet to turn.
         let in_line = self.crash_type == CrashType::FrontToRear || self.is_thrown();
@@ -80,27 +45,73 @@ impl Told {
         }
         if let Origin::Cross { side } = self.origin {
             self.cp.turns_wide = self.crash_type == CrashType::HeadOn;
-            // To meet it head-on, who comes from the left turns to the right.
-            let turn =
-                partner.acts.iter().rev().find(|fact| fact.act == Act::Turn && !fact.after_contact && !fact.begun);
-            let by_type = self.cp.turns_wide.then(|| side.other());
-            let drives = self.cp.movement.is_none_or(|movement| {
-                matches!(
-                    movement,
-                    Movement::Straight
-                        | Movement::Passing
-                        | Movement::LaneDeparture
-                        | Movement::CrossingIntoOpposingLane
-                )
-            });
-            if self.cp.turning == Turning::No && drives && self.cp.state == ContactState::Moving {
-                self.cp.turning = match turn.and_then(|fact| fact.side).or(by_type) {
-                    Some(LeftRight::Left) => Turning::Left,
-                    Some(LeftRight::Right) => Turning::Right,
-                    None => Turning::No,
-                };
-            }
+            self.turns_unsaid(partner, side);
         }
+    }
+
+    /// How a partner that reverses came to be at an angle to the road.
+    fn slants(&self, sv: &Party, partner: &Party) -> Option<Slant> {
+        match self.origin {
+            _ if self.cp.state != ContactState::Reversing => None,
+            // Out of the crossing road it came along the ego's, turned into that, and stood there.
+            Origin::Cross { side } => {
+                turned_off(partner).map(|turned| Slant::Stood { side: Some(turned), oncoming: turned != side })
+            }
+            Origin::Ahead | Origin::Behind | Origin::Beside { .. } => {
+                let before = || partner.acts.iter().filter(|fact| !fact.after_contact && !fact.begun);
+                let reversed = before().find(|fact| fact.act == Act::Reverse).map(|fact| fact.step);
+                let swing = before().rfind(|fact| matches!(fact.act, Act::Turn | Act::Drift | Act::Swerve));
+                let stood = |fact: &ActFact| Slant::Stood { side: fact.side, oncoming: faces(sv, partner) };
+                let swings = swing.and_then(|fact| match Some(fact.step) >= reversed {
+                    true => Some(Slant::Swung),
+                    false => (fact.act == Act::Turn).then(|| stood(fact)),
+                });
+                // Who backs into a stall of a lot swings round for it.
+                let lot = matches!(self.place, PlaceKind::ParkingLot | PlaceKind::Garage);
+                swings.or((lot && partner.did(Act::Park)).then_some(Slant::Swung))
+            }
+            _ => None,
+        }
+    }
+
+    /// What is left of the ego's turn where it meets somebody in it, behind it or before it.
+    fn turns_over(&mut self, sv: &Party) {
+        let straight = self.sv.movement == Some(Movement::Straight);
+        // Who meets a thing after a turn may be in it yet; not what lies across where it turned into.
+        if self.thing.is_some() && !self.at_entrance && straight {
+            self.sv.turned = false;
+        }
+        // Who comes from a side of an ego that drove into another junction after its turn does so from that side of its new road: one junction
+        // is drawn, and the turn is not.
+        let crosses = matches!(self.origin, Origin::Cross { .. });
+        if self.sv.turned && straight && crosses && enters_after_turn(sv) {
+            (self.sv.turning, self.sv.turned) = (Turning::No, false);
+        }
+        if lies_before_turn(self, sv) {
+            (self.sv.turning, self.sv.turns_later) = (Turning::No, true);
+        }
+    }
+
+    /// How a partner turns that comes along the crossing road and is told to drive on: as it did before; to meet the ego head-on, who comes from the
+    /// left turns to the right.
+    fn turns_unsaid(&mut self, partner: &Party, from: LeftRight) {
+        let on = |movement: Movement| {
+            matches!(
+                movement,
+                Movement::Straight | Movement::Passing | Movement::LaneDeparture | Movement::CrossingIntoOpposingLane
+            )
+        };
+        let drives = self.cp.state == ContactState::Moving && self.cp.movement.is_none_or(on);
+        if self.cp.turning != Turning::No || !drives {
+            return;
+        }
+        let turn = partner.acts.iter().rfind(|fact| fact.act == Act::Turn && !fact.after_contact && !fact.begun);
+        let by_type = self.cp.turns_wide.then(|| from.other());
+        self.cp.turning = match turn.and_then(|fact| fact.side).or(by_type) {
+            Some(LeftRight::Left) => Turning::Left,
+            Some(LeftRight::Right) => Turning::Right,
+            None => Turning::No,
+        };
     }
 }
 

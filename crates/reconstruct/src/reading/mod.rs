@@ -17,4 +17,5 @@ mod story;
 mod things;
 mod trailer;
 mod turns;
+mod vehicle;
 mod words;

@@ -96,25 +96,10 @@ impl Near {
             return None;
         }
         if other.kind.value.group() == KindGroup::Object {
-            let place = other.place.as_ref().map(|fact| fact.value);
-            let fixed = matches!(other.kind.value, Kind::Wall | Kind::Pole | Kind::Sign);
-            let rolls = !fixed && other.acts.iter().any(|fact| !fact.after_contact && moves(fact.act));
-            let does = if rolls { Does::Crosses } else { Does::Stands };
-            let (across, in_lane, also, first) = (false, false, None, First::Untold);
-            return Some(Self { place, across, does, after_turn: false, in_lane, also, first, number });
+            return Some(Self::of_thing(other, number));
         }
         let said = |of: &[&str]| of.iter().any(|word| words.contains(word));
-        let place = other.place.as_ref().map(|fact| fact.value).or_else(|| {
-            if said(&["oncoming", "opposing"]) {
-                Some(Origin::Opposite)
-            } else if said(&["preceding", "leading", "lead "]) {
-                Some(Origin::Ahead)
-            } else if said(&["following", "trailing"]) {
-                Some(Origin::Behind)
-            } else {
-                None
-            }
-        });
+        let place = other.place.as_ref().map(|fact| fact.value).or_else(|| place_by_words(words));
         // Who is parked and reaches into a lane stands so.
         let parked = is_parked(other);
         let reaches = |fact: &ActFact| parked && fact.act == Act::Drift;
@@ -122,35 +107,11 @@ impl Near {
         let on_wheels = !matches!(other.kind.value.group(), KindGroup::OnFoot | KindGroup::Animal);
         let crosses = on_wheels && before.iter().any(|fact| fact.act == Act::Cross);
         let across = place.is_none() && (crosses || said(&["cross traffic", "cross-traffic", "crossing traffic"]));
-        // "A truck ahead of it swerved into the left lane": it was in the ego's before.
-        let into_lane = other.place.as_ref().is_some_and(|fact| {
-            let words = text(&fact.source);
-            ["to the left lane", "to the right lane", "to the next lane"].iter().any(|lane| words.contains(lane))
-        });
-        let all: Vec<Does> =
-            before.iter().map(|fact| Does::of(fact, place, (on_wheels, into_lane))).collect::<Option<_>>()?;
-        let mut deeds: Vec<Does> = Vec::new();
-        for does in all.iter().copied().filter(|does| does.is_deed()) {
-            match deeds.last_mut().filter(|last| last.is_same(does)) {
-                Some(last) => *last = last.with_side_of(does),
-                None => deeds.push(does),
-            }
-        }
-        let (does, also) = match deeds.as_slice() {
-            [] => (all.last().copied().unwrap_or(Does::Untold), None),
-            [one] => (*one, None),
-            [.., last] if !deeds.iter().any(|does| does.is_of_one_way()) => (*last, None),
-            // Of two the one that takes it farther is drawn, and both are looked for.
-            &[first, last] if first.reach() >= last.reach() => (first, Some(last)),
-            &[first, last] => (last, Some(first)),
-            _ => return None,
-        };
-        // A queue stands.
-        let queue = other.place.as_ref().is_some_and(|fact| text(&fact.source).contains("queue"));
+        let wheels = (on_wheels, swerves_into_lane(other));
+        let all = before.iter().map(|fact| Does::of(fact, place, wheels)).collect::<Option<Vec<Does>>>()?;
+        let (does, also) = deeds(&all)?;
         let does = match does {
-            Does::Untold if queue || is_in_turn_lane(other) => Does::Stands,
-            // "A truck in the opposing lane blocked its view of who came from behind that."
-            Does::Untold if other.hides && place == Some(Origin::Opposite) => Does::Stands,
+            Does::Untold if stands_untold(other, place) => Does::Stands,
             // "A gap in passing traffic".
             Does::Untold if said(&["passing"]) && Does::Passes.fits(place) => Does::Passes,
             does => does,
@@ -158,17 +119,77 @@ impl Near {
         if !does.fits(place) || !also.is_none_or(|also| also.fits(place)) {
             return None;
         }
-        let drives = |fact: &&ActFact| matches!(fact.act, Act::Follow | Act::SetOff | Act::Enter | Act::Turn);
-        let in_view = on_wheels && matches!(place, Some(Origin::Ahead | Origin::Opposite));
-        let stood = before.first().is_some_and(|fact| matches!(fact.act, Act::Hold | Act::Stop | Act::Park));
-        let left = other.acts.iter().any(|fact| fact.act == Act::Leave && !fact.after_contact && !fact.begun);
-        let first = match does {
-            Does::Stands if in_view && !stood && before.iter().copied().any(|fact| drives(&fact)) => First::Came,
-            _ if left && !on_wheels => First::Left,
-            _ => First::Untold,
-        };
+        let first = first(other, &before, does, (place, on_wheels));
         let in_lane = stands_in_lane(other);
         Some(Self { place, across, does, after_turn: false, in_lane, also, first, number })
+    }
+
+    /// A thing lies there, or comes along.
+    fn of_thing(other: &Other, number: usize) -> Self {
+        let place = other.place.as_ref().map(|fact| fact.value);
+        let fixed = matches!(other.kind.value, Kind::Wall | Kind::Pole | Kind::Sign);
+        let rolls = !fixed && other.acts.iter().any(|fact| !fact.after_contact && moves(fact.act));
+        let does = if rolls { Does::Crosses } else { Does::Stands };
+        let (across, in_lane, also, first) = (false, false, None, First::Untold);
+        Self { place, across, does, after_turn: false, in_lane, also, first, number }
+    }
+}
+
+/// Where somebody is by the words that name it.
+fn place_by_words(words: &str) -> Option<Origin> {
+    let places: [(&[&str], Origin); 3] = [
+        (&["oncoming", "opposing"], Origin::Opposite),
+        (&["preceding", "leading", "lead "], Origin::Ahead),
+        (&["following", "trailing"], Origin::Behind),
+    ];
+    places.into_iter().find(|(of, _)| of.iter().any(|word| words.contains(word))).map(|(_, place)| place)
+}
+
+/// "A truck ahead of it swerved into the left lane": it was in the ego's before.
+fn swerves_into_lane(other: &Other) -> bool {
+    other.place.as_ref().is_some_and(|fact| {
+        let words = text(&fact.source);
+        ["to the left lane", "to the right lane", "to the next lane"].iter().any(|lane| words.contains(lane))
+    })
+}
+
+/// The deed of all that somebody does, and another one on the same way, where they can be drawn.
+fn deeds(all: &[Does]) -> Option<(Does, Option<Does>)> {
+    let mut deeds: Vec<Does> = Vec::new();
+    for does in all.iter().copied().filter(|does| does.is_deed()) {
+        match deeds.last_mut().filter(|last| last.is_same(does)) {
+            Some(last) => *last = last.with_side_of(does),
+            None => deeds.push(does),
+        }
+    }
+    match deeds.as_slice() {
+        [] => Some((all.last().copied().unwrap_or(Does::Untold), None)),
+        [one] => Some((*one, None)),
+        [.., last] if !deeds.iter().any(|does| does.is_of_one_way()) => Some((*last, None)),
+        // Of two the one that takes it farther is drawn, and both are looked for.
+        &[first, last] if first.reach() >= last.reach() => Some((first, Some(last))),
+        &[first, last] => Some((last, Some(first))),
+        _ => None,
+    }
+}
+
+/// Whether somebody of whom no deed is told stands: in a queue, in a lane for turns, or opposite, where it hid somebody: "a truck in the opposing
+/// lane blocked its view of who came from behind that."
+fn stands_untold(other: &Other, place: Option<Origin>) -> bool {
+    let queue = other.place.as_ref().is_some_and(|fact| text(&fact.source).contains("queue"));
+    queue || is_in_turn_lane(other) || other.hides && place == Some(Origin::Opposite)
+}
+
+/// What somebody who does this did first, or last.
+fn first(other: &Other, before: &[&ActFact], does: Does, (place, on_wheels): (Option<Origin>, bool)) -> First {
+    let drives = |fact: &&ActFact| matches!(fact.act, Act::Follow | Act::SetOff | Act::Enter | Act::Turn);
+    let in_view = on_wheels && matches!(place, Some(Origin::Ahead | Origin::Opposite));
+    let stood = before.first().is_some_and(|fact| matches!(fact.act, Act::Hold | Act::Stop | Act::Park));
+    let left = other.acts.iter().any(|fact| fact.act == Act::Leave && !fact.after_contact && !fact.begun);
+    match does {
+        Does::Stands if in_view && !stood && before.iter().any(drives) => First::Came,
+        _ if left && !on_wheels => First::Left,
+        _ => First::Untold,
     }
 }
 

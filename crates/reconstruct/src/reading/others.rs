@@ -104,126 +104,153 @@ fn is_light(kind: Kind) -> bool {
 
 /// Everybody who has a part in what the ego does, by what is told.
 pub(super) fn wanted(told: &Told, account: &Account) -> Vec<Extra> {
-    let story = Story { account };
-    let mut list: Vec<Extra> = Vec::new();
+    let mut gathered = Gathered { story: Story { account }, told, list: Vec::new() };
     for (at, other) in account.others.iter().enumerate() {
-        let kind = other.kind.value;
-        let near = |list: &[Extra]| {
-            let before = list.iter().filter(|extra| extra.role == Role::Near).count();
-            let near = Near::of(other, &text(&other.kind.source), before).filter(|_| !other.touched_partner);
-            let (awaited, several) = (story.is_near(other) || story.comes_with_siren(other), other.several);
-            let number = number_of(other);
-            let after_turn = story.is_after_turn(told, other);
-            let near = near.map(|near| Near { after_turn, ..near });
-            let near = near.map(|near| if told.dropped == Some(at) { near.ahead() } else { near });
-            let near = near.map(|near| {
-                if story.goes_first(told, other) {
-                    near.gone_first(Story::first_from(told) == Role::Oncoming)
-                } else {
-                    near
-                }
-            });
-            let crosses = matches!(told.origin, Origin::Cross { .. }) && story.is_passed_by_partner(other);
-            let near = near.map(|near| Near { place: near.place.or(Some(told.origin).filter(|_| crosses)), ..near });
-            let hides = other.hides;
-            near.map(|near| Extra { awaited, several, number, hides, ..Extra::near(near, at, kind) })
-        };
-        // Traffic that an ego passes which is not told to have slowed or stood is there.
-        let passes =
-            |role: Role| role == Role::Crosser && !told.sv.state.stands() && story.reactions().next().is_none();
-        // Nor does traffic that went on before the ego stopped, for something else, stand in its way.
-        let gone = |role: Role| role == Role::Lead && (story.has_gone(told, other) || is_heard(other));
-        let role = story.role(told, other).filter(|role| is_drawn(told, *role) && !passes(*role) && !gone(*role));
-        let Some(role) = role else {
-            list.extend(near(&list));
-            continue;
-        };
-        let drives_on = story.drives_on(other).filter(|_| role == Role::Lead);
-        let parked = other.acts.iter().any(|fact| text(&fact.source).contains("parked"));
-        let sets_off = sets_off(told) && !parked && !leaves_lane(told) || lets_in_at_green(told, other);
-        let goes = role == Role::Lead && sets_off || drives_on.is_some();
-        let first = drives_on == Some(true);
-        let late = story.is_slowed_for_later(told, other);
-        // Of whom no deed is told where the ego slows for it again, it has moved up as that did.
-        let moves_up = (late || story.is_placed_as_it_slows(told, other)) && before_contact(other).next().is_none();
-        let again = role == Role::Lead && (story.stands_again(other) || moves_up);
-        let stays = role == Role::Walker && stays_close(other);
-        // "With a van parked at each side of the drive, a boy ran out from between the vans": those are parked.
-        let parks = |extra: &Extra| {
-            let same = extra.kind.partner_kind() == kind.partner_kind();
-            role == Role::Screen && extra.role == Role::Kerb && same && other.acts.is_empty()
-        };
-        match list.iter_mut().find(|extra| extra.role == role && extra.stays == stays || parks(extra)) {
-            Some(known)
-                if kind.partner_kind().is_none_or(|kind| known.kind.partner_kind() == Some(kind))
-                    || is_of_queue(known, other) =>
-            {
-                // "Behind a bus in traffic": one of them is a bus.
-                if !known.several {
-                    known.more = Some(kind);
-                } else if known.kind.partner_kind().is_none() {
-                    known.more = Some(known.kind);
-                }
-                if known.kind.partner_kind().is_none() {
-                    known.kind = kind;
-                }
-                known.of.push(at);
-                known.number = known.number.max(number_of(other));
-                known.goes |= goes;
-                known.parked |= parked;
-                known.several = true;
-                known.hides |= other.hides;
-                if role == Role::Screen && known.role == Role::Kerb {
-                    known.side = told.comes_from_side();
-                }
-                known.first |= first;
-                known.again |= again;
-            }
-            Some(_) => list.extend(near(&list)),
-            None => {
-                let side = story.side(role, told, other);
-                let awaited = story.is_near(other) || other.several;
-                let behind = role == Role::Obstacle && story.is_back(other);
-                let between = role == Role::Beside && story.is_between(told, other);
-                let parks = role == Role::Lead && is_parking(other);
-                let passed = matches!(role, Role::Kerb | Role::Obstacle) && story.goes_by(told, other);
-                let goes_out = role == Role::Passed && story.is_reason_to_go_out(told, other);
-                list.push(Extra {
-                    of: vec![at],
-                    kind,
-                    goes,
-                    parks,
-                    parked,
-                    first,
-                    goes_out,
-                    slow: goes_out && before_contact(other).next().is_none(),
-                    again,
-                    late,
-                    early: role == Role::Crosser && story.is_gone_before(other)
-                        || matches!(role, Role::Crosser | Role::Oncoming) && story.goes_first(told, other),
-                    awaited,
-                    behind,
-                    between,
-                    led: role == Role::Animal && story.led_by(other).is_some(),
-                    hides: other.hides,
-                    passed,
-                    stays,
-                    runs: role == Role::Walker && kind == Kind::Pedestrian && runs(other),
-                    opposite: other.place.as_ref().is_some_and(|fact| fact.value == Origin::Opposite),
-                    several: other.several,
-                    number: number_of(other),
-                    side,
-                    astride: other.astride.as_ref().map(|fact| fact.value),
-                    ..Extra::of_reason(role)
-                });
-            }
-        }
+        gathered.add(at, other);
     }
+    let Gathered { story, mut list, .. } = gathered;
     for extra in list.iter_mut().filter(|extra| extra.again) {
         (extra.goes, extra.first) = (false, false);
     }
     for_reasons(&story, told, &mut list);
     list
+}
+
+/// Those who have a part, or are near, of the others that have been looked at.
+struct Gathered<'a> {
+    story: Story<'a>,
+    told: &'a Told,
+    list: Vec<Extra>,
+}
+
+impl Gathered<'_> {
+    /// Adds one of the others: with its part, to those who have the same, or as one who is near where it has none, or is of another kind than they.
+    fn add(&mut self, at: usize, other: &Other) {
+        let Some(extra) = self.role(other).map(|role| self.extra(role, at, other)) else {
+            return self.list.extend(self.near(at, other));
+        };
+        let kind = extra.kind.partner_kind();
+        // "With a van parked at each side of the drive, a boy ran out from between the vans": those are parked.
+        let parks = |known: &Extra| {
+            let hides = extra.role == Role::Screen && known.role == Role::Kerb;
+            hides && known.kind.partner_kind() == kind && other.acts.is_empty()
+        };
+        let same = |known: &Extra| known.role == extra.role && known.stays == extra.stays || parks(known);
+        match self.list.iter_mut().find(|known| same(known)) {
+            Some(known)
+                if kind.is_none_or(|kind| known.kind.partner_kind() == Some(kind)) || is_of_queue(known, other) =>
+            {
+                join(known, extra, self.told);
+            }
+            Some(_) => self.list.extend(self.near(at, other)),
+            None => self.list.push(extra),
+        }
+    }
+
+    /// The part of one of the others, where it has one that is drawn.
+    fn role(&self, other: &Other) -> Option<Role> {
+        let (story, told) = (&self.story, self.told);
+        let role = story.role(told, other).filter(|role| is_drawn(told, *role))?;
+        let elsewhere = match role {
+            // Traffic that an ego passes which is not told to have slowed or stood is there.
+            Role::Crosser => !told.sv.state.stands() && story.reactions().next().is_none(),
+            // Nor does traffic that went on before the ego stopped, for something else, stand in its way.
+            Role::Lead => story.has_gone(told, other) || is_heard(other),
+            _ => false,
+        };
+        (!elsewhere).then_some(role)
+    }
+
+    /// One of the others who has this part.
+    fn extra(&self, role: Role, at: usize, other: &Other) -> Extra {
+        let (story, told, kind) = (&self.story, self.told, other.kind.value);
+        let acts_not = before_contact(other).next().is_none();
+        let lead = role == Role::Lead;
+        let parked = other.acts.iter().any(|fact| text(&fact.source).contains("parked"));
+        let drives_on = story.drives_on(other).filter(|_| lead);
+        let sets_off = sets_off(told) && !parked && !leaves_lane(told) || lets_in_at_green(told, other);
+        let late = story.is_slowed_for_later(told, other);
+        // Of whom no deed is told where the ego slows for it again, it has moved up as that did.
+        let moves_up = (late || story.is_placed_as_it_slows(told, other)) && acts_not;
+        let goes_out = role == Role::Passed && story.is_reason_to_go_out(told, other);
+        Extra {
+            of: vec![at],
+            kind,
+            goes: lead && sets_off || drives_on.is_some(),
+            parks: lead && is_parking(other),
+            parked,
+            first: drives_on == Some(true),
+            goes_out,
+            slow: goes_out && acts_not,
+            again: lead && (story.stands_again(other) || moves_up),
+            late,
+            early: role == Role::Crosser && story.is_gone_before(other)
+                || matches!(role, Role::Crosser | Role::Oncoming) && story.goes_first(told, other),
+            awaited: story.is_near(other) || other.several,
+            behind: role == Role::Obstacle && story.is_back(other),
+            between: role == Role::Beside && story.is_between(told, other),
+            led: role == Role::Animal && story.led_by(other).is_some(),
+            hides: other.hides,
+            passed: matches!(role, Role::Kerb | Role::Obstacle) && story.goes_by(told, other),
+            stays: role == Role::Walker && stays_close(other),
+            runs: role == Role::Walker && kind == Kind::Pedestrian && runs(other),
+            opposite: other.place.as_ref().is_some_and(|fact| fact.value == Origin::Opposite),
+            several: other.several,
+            number: number_of(other),
+            side: story.side(role, told, other),
+            astride: other.astride.as_ref().map(|fact| fact.value),
+            ..Extra::of_reason(role)
+        }
+    }
+
+    /// One of the others who is near and has no part, where it can be drawn.
+    fn near(&self, at: usize, other: &Other) -> Option<Extra> {
+        let (story, told) = (&self.story, self.told);
+        let before = self.list.iter().filter(|extra| extra.role == Role::Near).count();
+        let mut near = Near::of(other, &text(&other.kind.source), before).filter(|_| !other.touched_partner)?;
+        near.after_turn = story.is_after_turn(told, other);
+        if told.dropped == Some(at) {
+            near = near.ahead();
+        }
+        if story.goes_first(told, other) {
+            near = near.gone_first(Story::first_from(told) == Role::Oncoming);
+        }
+        if matches!(told.origin, Origin::Cross { .. }) && story.is_passed_by_partner(other) {
+            near.place = near.place.or(Some(told.origin));
+        }
+        Some(Extra {
+            awaited: story.is_near(other) || story.comes_with_siren(other),
+            several: other.several,
+            number: number_of(other),
+            hides: other.hides,
+            ..Extra::near(near, at, other.kind.value)
+        })
+    }
+}
+
+/// Adds one to those who have the same part.
+fn join(known: &mut Extra, another: Extra, told: &Told) {
+    let of_any_kind = known.kind.partner_kind().is_none();
+    // "Behind a bus in traffic": one of them is a bus.
+    if !known.several {
+        known.more = Some(another.kind);
+    } else if of_any_kind {
+        known.more = Some(known.kind);
+    }
+    if of_any_kind {
+        known.kind = another.kind;
+    }
+    known.of.extend(another.of);
+    known.number = known.number.max(another.number);
+    known.goes |= another.goes;
+    known.parked |= another.parked;
+    known.several = true;
+    known.hides |= another.hides;
+    if another.role == Role::Screen && known.role == Role::Kerb {
+        known.side = told.comes_from_side();
+    }
+    known.first |= another.first;
+    known.again |= another.again;
 }
 
 /// How many of them are drawn where several are told: as many as are counted, up to four, and three where they are more than a few.

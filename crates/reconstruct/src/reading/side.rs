@@ -3,6 +3,8 @@
 use crate::reading::acts::is_hard;
 use crate::reading::turns::{last_way, leaves_line, turned_before, turned_before_its_stop, went_on_straight};
 use crate::reading::{acts, phases, sizes, things, words};
+use crate::told::doing::Doing;
+use crate::told::phase::Phase;
 use crate::told::side::{Side, Slowed, Turning};
 use crate::told::sizes::size_of;
 use crate::told::speeds::SLOWLY_MPS;
@@ -18,135 +20,45 @@ use recrash_model::zones::ContactZone;
 /// What is told of one side.
 pub(super) fn side(party: &Party, kind: Option<Kind>, assumed: &mut Vec<String>, who: &str) -> Side {
     let kind = kind.or_else(|| told(&party.kind));
-    // A robot of the sidewalk is no vehicle of the road.
-    let robot = kind.filter(|kind| *kind == Kind::DeliveryRobot).map(|_| PartnerKind::OtherNonMotorist);
-    let partner_kind = robot.or_else(|| kind.and_then(Kind::partner_kind));
+    let partner_kind = partner_kind(kind);
     if partner_kind.is_none() && who == "partner" {
         assumed.push("the partner is a passenger car".to_owned());
     }
-    let movement = told(&party.movement);
-    let told_mps = |meaning| party.speeds.iter().find(|told| told.value.meaning == meaning).map(|told| told.value.mps);
-    let impact_mps = told_mps(SpeedMeaning::Impact);
-    let state = told(&party.state);
-    let slides = state.is_none() && kind.is_some_and(|kind| kind.group() == KindGroup::Object) && things::slides(party);
-    let state = if slides { Some(ContactState::Moving) } else { state };
-    let state_told = state.is_some();
-    let state = state.unwrap_or_else(|| match movement {
-        Some(Movement::Stopped) => ContactState::Stopped,
-        Some(Movement::Parked) => ContactState::Parked,
-        Some(Movement::Backing) => ContactState::Reversing,
-        _ if impact_mps == Some(0.0) => ContactState::Stopped,
-        _ if kind.is_some_and(|kind| kind.group() == KindGroup::Object) => ContactState::Stopped,
-        _ => ContactState::Moving,
-    });
-    // Who moves backwards moves.
-    let backs = state == ContactState::Moving
-        && (movement == Some(Movement::Backing) || parks_backing(party))
-        && !went_on(party);
-    let state = if backs { ContactState::Reversing } else { state };
-    // Who parks in the story comes to a stop in it.
-    let came_to_park = who == "ego" && state == ContactState::Parked && came_there(party);
-    let state = if came_to_park { ContactState::Stopped } else { state };
+    let half = Half::of(party, kind, who == "ego");
+    let Half { movement, impact_mps, state, state_told, came_to_park, turning, .. } = half;
     if !state_told {
         assumed.push(format!("the {who} is {} at the contact", state.label()));
     }
-    let turned = |side: LeftRight| {
-        party.acts.iter().any(|fact| fact.act == Act::Turn && fact.side == Some(side) && !fact.after_contact)
-    };
-    let turning = match movement {
-        Some(Movement::LeftTurn) => Turning::Left,
-        Some(Movement::RightTurn) => Turning::Right,
-        Some(Movement::UTurn) => Turning::Round,
-        None if turned(LeftRight::Left) => Turning::Left,
-        None if turned(LeftRight::Right) => Turning::Right,
-        Some(Movement::Stopped) if who == "ego" => turned_before_its_stop(party),
-        Some(Movement::Straight) if who == "ego" => turned_before(party),
-        _ => Turning::No,
-    };
-    // The last before the contact is the one that led to it. Who enters a lane beside its own does so to a side.
-    let aside = party
-        .acts
-        .iter()
-        .filter(|fact| (leaves_line(fact.act) || fact.act == Act::Enter) && !fact.after_contact)
-        .filter_map(|fact| fact.side)
-        .next_back();
-    // It stood where it did something after it, or held its place; "was coming to a stop and traveling slowly" tells one thing twice.
-    let does_more = |stop: &ActFact| {
-        let tells_twice = |later: &ActFact| later.act == Act::Follow && is_under_way(stop);
-        party.acts.iter().any(|later| !later.after_contact && later.step > stop.step && !tells_twice(later))
-    };
-    let stood_first = state == ContactState::Moving
-        && party.acts.iter().any(|fact| {
-            let stands = match fact.act {
-                Act::Hold | Act::SetOff => true,
-                Act::Stop => does_more(fact),
-                _ => false,
-            };
-            stands && !fact.after_contact && !fact.begun
-        });
-    let slows = party.acts.iter().any(|fact| matches!(fact.act, Act::Slow | Act::Stop) && !fact.after_contact);
-    let slows = slows && (!stood_first || slowed_after_its_stand(party));
-    let came_at = told_mps(SpeedMeaning::Approach).or_else(|| faster_than(party, impact_mps));
-    let slowed_from = (slows && !gained_last(party) && state == ContactState::Moving)
-        .then(|| Slowed(came_at.filter(|_| !stood_first)));
-    // "Came up from behind at 23 mph and struck it": who is told to come so fast, and of no change of speed, struck it so fast.
-    let steady =
-        state == ContactState::Moving && turning == Turning::No && !stood_first && !slows && !gained_last(party);
-    let came_mps = told_mps(SpeedMeaning::Approach).filter(|_| steady && impact_mps.is_none());
-    // Of somebody on foot, an animal or a thing the state says enough.
-    let rides = |kind: Kind| matches!(kind, Kind::ScooterRider | Kind::Skateboarder);
-    let drives = kind.is_none_or(|kind| {
-        rides(kind) || !matches!(kind.group(), KindGroup::OnFoot | KindGroup::Animal | KindGroup::Object)
-    });
-    let stood_first = stood_first || who == "ego" && state == ContactState::Moving && leaves_space(party);
-    let phases = match state_told && state != ContactState::Parked && (drives || who == "ego") {
-        true => phases::told(party, state),
-        false => Vec::new(),
-    };
-    let mut acts = if drives || who == "ego" { acts::told(party, state) } else { Vec::new() };
-    if kind.is_some_and(rides) {
-        // On small wheels it turns at once.
-        acts.retain(|doing| !doing.is_turn());
-    }
-    let stopped = last_way(party).filter(|_| state == ContactState::Stopped && turning == Turning::No && who == "ego");
-    let stopped_aside = stopped.filter(|fact| leaves_line(fact.act) || fact.act == Act::Pass && fact.side.is_some());
-    let aside = stopped_aside.and_then(|fact| fact.side).or(aside);
-    let stopped_aside = stopped_aside.map(|fact| fact.act);
-    let stops = who == "ego" && state == ContactState::Stopped;
-    let rolled_mps = told_mps(SpeedMeaning::Approach).filter(|mps| (LEAST_ROLLED_MPS..ROLLING_MPS).contains(mps));
-    let gains = gained_last(party) && state == ContactState::Moving && !stood_first && phases.is_empty();
-    let changed_lanes = matches!(movement, None | Some(Movement::Straight))
-        && party.acts.iter().any(|fact| fact.act == Act::LaneChange && !fact.after_contact && !fact.begun);
-    let passes = movement == Some(Movement::ChangingLanes)
-        && party.acts.iter().any(|fact| fact.act == Act::Pass && !fact.after_contact && !fact.begun);
+    let (phases, acts) = (half.phases(), half.acts());
+    let stopped_aside = half.stopped_aside();
+    let came_mps = half.came_mps();
+    let zones = party.zone_values();
+    let above_or_below = |zone: &ContactZone| matches!(zone, ContactZone::Top | ContactZone::Bottom);
     Side {
-        aside,
-        changed_lanes,
+        aside: stopped_aside.and_then(|fact| fact.side).or(half.aside()),
+        changed_lanes: matches!(movement, None | Some(Movement::Straight)) && half.has_done(Act::LaneChange),
         merges_in: merges_in(party, movement),
         came_over: came_over(party),
-        passes,
+        passes: movement == Some(Movement::ChangingLanes) && half.has_done(Act::Pass),
         goes_round: false,
         returns: returns(party),
-        gains,
+        gains: gained_last(party) && half.moves() && !half.stood_first() && phases.is_empty(),
         reacts: false,
         brakes_hard: brakes_hard(party, true),
         came_hard: brakes_hard(party, false),
-        rolled_mps: rolled_mps.or(rolled_slowly(party)).filter(|_| stops && phases.is_empty()),
+        rolled_mps: half.rolled_mps().filter(|_| phases.is_empty()),
         slowed_early: slowed_early(party),
-        stopped_aside,
+        stopped_aside: stopped_aside.map(|fact| fact.act),
         turns_later: false,
-        turned: turning != Turning::No
-            && (party.acts.iter().any(|fact| fact.act == Act::Turn && fact.done)
-                || movement == Some(Movement::Straight)
-                || movement == Some(Movement::Stopped) && went_on_straight(party)),
+        turned: half.has_turned(),
         crossed: acts::has_crossed(party),
         completes: is_completing(party, movement) || acts.iter().any(|doing| doing.within_lane),
         turns_wide: false,
         dodges: false,
         slants: None,
         backs_in: false,
-        slowed_from,
-        stood_first,
+        slowed_from: half.slowed_from(),
+        stood_first: half.stood_first(),
         came_to_park,
         came_along: came_along(party),
         came_there: came_there(party),
@@ -160,14 +72,9 @@ pub(super) fn side(party: &Party, kind: Option<Kind>, assumed: &mut Vec<String>,
         state_told,
         movement,
         turning,
-        only_above_or_below: !party.zones.is_empty()
-            && party.zone_values().iter().all(|zone| matches!(zone, ContactZone::Top | ContactZone::Bottom)),
-        only_below: !party.zones.is_empty() && party.zone_values().iter().all(|zone| *zone == ContactZone::Bottom),
-        zones: party
-            .zone_values()
-            .into_iter()
-            .filter(|z| !matches!(z, ContactZone::Top | ContactZone::Bottom))
-            .collect(),
+        only_above_or_below: !zones.is_empty() && zones.iter().all(above_or_below),
+        only_below: !zones.is_empty() && zones.iter().all(|zone| *zone == ContactZone::Bottom),
+        zones: zones.into_iter().filter(|zone| !above_or_below(zone)).collect(),
         manner: manner(party),
         impact_mps: impact_mps.or(came_mps),
         came_so: came_mps.is_some(),
@@ -177,6 +84,192 @@ pub(super) fn side(party: &Party, kind: Option<Kind>, assumed: &mut Vec<String>,
         lane_to_come: party.lane.as_ref().is_some_and(|fact| goes_there(&fact.source)),
         control: control(party),
     }
+}
+
+/// As what somebody is drawn; a robot of the sidewalk is no vehicle of the road.
+fn partner_kind(kind: Option<Kind>) -> Option<PartnerKind> {
+    match kind? {
+        Kind::DeliveryRobot => Some(PartnerKind::OtherNonMotorist),
+        kind => kind.partner_kind(),
+    }
+}
+
+/// Whether somebody rides on small wheels.
+const fn rides(kind: Kind) -> bool {
+    matches!(kind, Kind::ScooterRider | Kind::Skateboarder)
+}
+
+/// How somebody moves at the contact and came there, by which the rest of its side is read.
+struct Half<'a> {
+    party: &'a Party,
+    kind: Option<Kind>,
+    is_ego: bool,
+    movement: Option<Movement>,
+    /// Told speed at the contact. [m/s]
+    impact_mps: Option<f64>,
+    state: ContactState,
+    state_told: bool,
+    /// It is parked at last, and comes to a stop in the story.
+    came_to_park: bool,
+    turning: Turning,
+    /// It stood on its way, by what it did.
+    stood: bool,
+}
+
+/// A told speed of somebody. [m/s]
+fn told_mps(party: &Party, meaning: SpeedMeaning) -> Option<f64> {
+    party.speeds.iter().find(|told| told.value.meaning == meaning).map(|told| told.value.mps)
+}
+
+impl<'a> Half<'a> {
+    fn of(party: &'a Party, kind: Option<Kind>, is_ego: bool) -> Self {
+        let movement = told(&party.movement);
+        let impact_mps = told_mps(party, SpeedMeaning::Impact);
+        let thing = kind.is_some_and(|kind| kind.group() == KindGroup::Object);
+        let slides = told(&party.state).is_none() && thing && things::slides(party);
+        let said = if slides { Some(ContactState::Moving) } else { told(&party.state) };
+        let state = said.unwrap_or(match movement {
+            Some(Movement::Stopped) => ContactState::Stopped,
+            Some(Movement::Parked) => ContactState::Parked,
+            Some(Movement::Backing) => ContactState::Reversing,
+            _ if impact_mps == Some(0.0) || thing => ContactState::Stopped,
+            _ => ContactState::Moving,
+        });
+        let backs = (movement == Some(Movement::Backing) || parks_backing(party)) && !went_on(party);
+        let came_to_park = is_ego && state == ContactState::Parked && came_there(party);
+        let state = match state {
+            // Who moves backwards moves.
+            ContactState::Moving if backs => ContactState::Reversing,
+            // Who parks in the story comes to a stop in it.
+            _ if came_to_park => ContactState::Stopped,
+            state => state,
+        };
+        let turning = turning(party, movement, is_ego);
+        let stood = state == ContactState::Moving && stood_on_its_way(party);
+        let state_told = said.is_some();
+        Self { party, kind, is_ego, movement, impact_mps, state, state_told, came_to_park, turning, stood }
+    }
+
+    fn moves(&self) -> bool {
+        self.state == ContactState::Moving
+    }
+
+    /// Whether it is told to have done this before the contact, and not only begun to.
+    fn has_done(&self, act: Act) -> bool {
+        self.party.acts.iter().any(|fact| fact.act == act && !fact.after_contact && !fact.begun)
+    }
+
+    /// Whether it stood before it moved: also an ego that left a space.
+    fn stood_first(&self) -> bool {
+        self.stood || self.is_ego && self.moves() && leaves_space(self.party)
+    }
+
+    /// Whether it slowed, since it stood.
+    fn slows(&self) -> bool {
+        let slows = |fact: &ActFact| matches!(fact.act, Act::Slow | Act::Stop) && !fact.after_contact;
+        self.party.acts.iter().any(slows) && (!self.stood || slowed_after_its_stand(self.party))
+    }
+
+    fn slowed_from(&self) -> Option<Slowed> {
+        let came_at = told_mps(self.party, SpeedMeaning::Approach).or_else(|| faster_than(self.party, self.impact_mps));
+        let slowed = self.slows() && !gained_last(self.party) && self.moves();
+        slowed.then(|| Slowed(came_at.filter(|_| !self.stood)))
+    }
+
+    /// "Came up from behind at 23 mph and struck it": who is told to come so fast, and of no change of speed, struck it so fast. [m/s]
+    fn came_mps(&self) -> Option<f64> {
+        let turns = self.turning != Turning::No;
+        let steady = self.moves() && !turns && !self.stood && !self.slows() && !gained_last(self.party);
+        told_mps(self.party, SpeedMeaning::Approach).filter(|_| steady && self.impact_mps.is_none())
+    }
+
+    /// How fast an ego that stands came before it stopped, where that is slow. [m/s]
+    fn rolled_mps(&self) -> Option<f64> {
+        let slow = |mps: &f64| (LEAST_ROLLED_MPS..ROLLING_MPS).contains(mps);
+        let came_mps = told_mps(self.party, SpeedMeaning::Approach).filter(slow);
+        let stops = self.is_ego && self.state == ContactState::Stopped;
+        came_mps.or_else(|| rolled_slowly(self.party)).filter(|_| stops)
+    }
+
+    /// Whether more than its state is read: of somebody on foot, an animal or a thing that says enough.
+    fn drives(&self) -> bool {
+        let light = |kind: Kind| matches!(kind.group(), KindGroup::OnFoot | KindGroup::Animal | KindGroup::Object);
+        self.is_ego || self.kind.is_none_or(|kind| rides(kind) || !light(kind))
+    }
+
+    fn phases(&self) -> Vec<Phase> {
+        match self.state_told && self.state != ContactState::Parked && self.drives() {
+            true => phases::told(self.party, self.state),
+            false => Vec::new(),
+        }
+    }
+
+    fn acts(&self) -> Vec<Doing> {
+        let mut acts = if self.drives() { acts::told(self.party, self.state) } else { Vec::new() };
+        if self.kind.is_some_and(rides) {
+            // On small wheels it turns at once.
+            acts.retain(|doing| !doing.is_turn());
+        }
+        acts
+    }
+
+    /// To which side it left its line: the last before the contact is the one that led to it. Who enters a lane beside its own does so to a side.
+    fn aside(&self) -> Option<LeftRight> {
+        let leaves = |fact: &&ActFact| (leaves_line(fact.act) || fact.act == Act::Enter) && !fact.after_contact;
+        self.party.acts.iter().filter(leaves).filter_map(|fact| fact.side).next_back()
+    }
+
+    /// By what an ego that stands left its line before it came to a stop.
+    fn stopped_aside(&self) -> Option<&'a ActFact> {
+        let stands = self.is_ego && self.state == ContactState::Stopped && self.turning == Turning::No;
+        let last = last_way(self.party).filter(|_| stands);
+        last.filter(|fact| leaves_line(fact.act) || fact.act == Act::Pass && fact.side.is_some())
+    }
+
+    /// Whether its turn was over, or all but over.
+    fn has_turned(&self) -> bool {
+        let done = || self.party.acts.iter().any(|fact| fact.act == Act::Turn && fact.done);
+        let straight = match self.movement {
+            Some(Movement::Straight) => true,
+            Some(Movement::Stopped) => went_on_straight(self.party),
+            _ => false,
+        };
+        self.turning != Turning::No && (straight || done())
+    }
+}
+
+/// How somebody turns before the contact.
+fn turning(party: &Party, movement: Option<Movement>, is_ego: bool) -> Turning {
+    let turned = |side: LeftRight| {
+        party.acts.iter().any(|fact| fact.act == Act::Turn && fact.side == Some(side) && !fact.after_contact)
+    };
+    match movement {
+        Some(Movement::LeftTurn) => Turning::Left,
+        Some(Movement::RightTurn) => Turning::Right,
+        Some(Movement::UTurn) => Turning::Round,
+        None if turned(LeftRight::Left) => Turning::Left,
+        None if turned(LeftRight::Right) => Turning::Right,
+        Some(Movement::Stopped) if is_ego => turned_before_its_stop(party),
+        Some(Movement::Straight) if is_ego => turned_before(party),
+        _ => Turning::No,
+    }
+}
+
+/// Whether somebody stood before the contact: where it did something after its stop, or held its place; "was coming to a stop and traveling
+/// slowly" tells one thing twice.
+fn stood_on_its_way(party: &Party) -> bool {
+    let does_more = |stop: &ActFact| {
+        let tells_twice = |later: &ActFact| later.act == Act::Follow && is_under_way(stop);
+        party.acts.iter().any(|later| !later.after_contact && later.step > stop.step && !tells_twice(later))
+    };
+    party.acts.iter().any(|fact| {
+        let stands = match fact.act {
+            Act::Hold | Act::SetOff => true,
+            Act::Stop => does_more(fact),
+            _ => false,
+        };
+        stands && !fact.after_contact && !fact.begun
+    })
 }
 
 /// So much faster than at the contact is more than is usual of who slows. [m/s]

@@ -1,17 +1,16 @@
 //! What the words tell of somebody else: whether the ego acted for it, where it is, and what it is to the ego.
 
 use crate::reading::turns::leaves_line;
+use crate::reading::vehicle::Vehicle;
 use crate::reading::words::{before_contact, span, text};
 use crate::told::crash::Told;
 use crate::told::others::Role;
-use crate::told::queue::sets_off;
-use crate::told::side::{Turning, is_on_foot};
+use crate::told::side::Turning;
 use crate::told::zones::side_of;
 use recrash_model::account::{
     Account, Act, ActFact, ContactState, ControlDevice, Kind, KindGroup, LeftRight, Origin, Other, PlaceKind,
     SignalState, Source, StandReason,
 };
-use recrash_model::template::Movement;
 
 /// Who is named no farther behind the words that the ego slowed or stood is whom it did so for; of who is on foot, and of animals, nor
 /// farther before them. [byte]
@@ -26,9 +25,6 @@ const WITH_WITHIN: usize = 8;
 
 /// For whom the partner leaves its lane is named no farther behind the words for that: " to the left to go around ".
 const GOES_OUT_WITHIN: usize = 30;
-
-/// What blocks a junction is named no more than so many bytes before the words for it: " that was ".
-const BLOCKS_WITHIN: usize = 16;
 
 /// Whether somebody is told to be parked.
 pub(super) fn is_parked(other: &Other) -> bool {
@@ -46,19 +42,8 @@ pub(super) fn stays_close(other: &Other) -> bool {
     !crosses && before_contact(other).last().is_some_and(|fact| matches!(fact.act, Act::Hold | Act::Stop))
 }
 
-/// Whether somebody in the lane beside the ego changes lanes towards it: "a car in the lane to its right changed lanes to the left".
-fn comes_in(other: &Other) -> bool {
-    let next =
-        |source: &Source| ["adjacent", "next", "beside", " of the "].iter().any(|word| text(source).contains(word));
-    let place = other.place.as_ref().filter(|fact| next(&fact.source)).map(|fact| fact.value);
-    before_contact(other).any(|fact| {
-        let towards = |side: LeftRight| place == Some(Origin::Beside { side: side.other() });
-        fact.act == Act::LaneChange && !fact.begun && fact.side.is_some_and(towards)
-    })
-}
-
 /// Whether somebody changes lanes into the ego's, and no words tell to which side that is: "a van cut in", "a van encroached".
-fn cuts_in(other: &Other) -> bool {
+pub(super) fn cuts_in(other: &Other) -> bool {
     let into = |fact: &ActFact| {
         let words = text(&fact.source);
         let says = |of: &[&str]| of.iter().any(|word| words.contains(word));
@@ -71,7 +56,7 @@ fn cuts_in(other: &Other) -> bool {
 }
 
 /// Whether words are for a place to park.
-fn is_space(words: &str) -> bool {
+pub(super) fn is_space(words: &str) -> bool {
     ["parking", "space", "spot", "stall"].iter().any(|word| words.contains(word))
 }
 
@@ -83,18 +68,6 @@ pub(super) fn parks_backwards(other: &Other) -> bool {
     };
     before_contact(other).any(into)
 }
-
-/// Whether somebody ahead backs out of a place to park: "a pickup reversing into its lane from a parking spot ahead".
-fn backs_out(other: &Other) -> bool {
-    let words = other.place.as_ref().map(|fact| text(&fact.source)).unwrap_or_default();
-    let out =
-        ["from", "out of"].iter().find_map(|out| words.split_once(&format!("{out} a "))).map(|(_, behind)| behind);
-    out.is_some_and(is_space) && !parks_backwards(other)
-}
-
-/// Words for a place behind the junction.
-const FAR_SIDE: [&str; 4] =
-    ["across the intersection", "beyond the intersection", "past the intersection", "far side of the intersection"];
 
 /// Words for one that stands in a lane.
 const IN_LANE: [&str; 6] = ["in-lane", "in lane", "in the lane", "in its lane", "double-parked", "double parked"];
@@ -132,14 +105,8 @@ pub(super) fn is_at_junction(told: &Told) -> bool {
     told.place == PlaceKind::Intersection || told.is_controlled() || told.sv.turning != Turning::No
 }
 
-/// Whether the ego goes round something.
-fn goes_round(told: &Told) -> bool {
-    told.sv_aside().is_some_and(|aside| aside.from_t_m == 0.0 && told.sv.movement != Some(Movement::ParkingManeuver))
-        || told.sv.movement == Some(Movement::Passing)
-}
-
 /// Whether the ego keeps its lane.
-fn is_straight(told: &Told) -> bool {
+pub(super) fn is_straight(told: &Told) -> bool {
     told.sv.turning == Turning::No && told.sv_aside().is_none()
 }
 
@@ -269,7 +236,7 @@ impl Story<'_> {
     }
 
     /// Whether somebody is named a little before the words that the ego slowed or stood.
-    fn is_named_before(&self, other: &Other) -> bool {
+    pub(super) fn is_named_before(&self, other: &Other) -> bool {
         let named = span(&other.kind.source);
         named.is_some_and(|(_, end)| self.reactions().any(|(start, _)| (end..end + NAMED_BEFORE).contains(&start)))
     }
@@ -324,7 +291,7 @@ impl Story<'_> {
         match other.kind.value.group() {
             // Who rides into the ego's lane from beside is in it.
             KindGroup::Cyclist if before_contact(other).any(|fact| fact.act == Act::LaneChange) => {
-                self.vehicle(told, other)
+                Vehicle::of(self, told, other).role()
             }
             // Who stays at the side of an ego that drives on, and for whom it did nothing, is near alone.
             KindGroup::OnFoot
@@ -334,22 +301,13 @@ impl Story<'_> {
             }
             KindGroup::OnFoot | KindGroup::Cyclist => self.is_met(other).then_some(Role::Walker),
             KindGroup::Animal => self.is_met(other).then_some(Role::Animal),
-            KindGroup::Car | KindGroup::Truck | KindGroup::Motorcycle => self.vehicle(told, other),
+            KindGroup::Car | KindGroup::Truck | KindGroup::Motorcycle => Vehicle::of(self, told, other).role(),
             _ => None,
         }
     }
 
-    /// Whether the partner goes round somebody who stands: it comes over from the opposite side, or passes where the ego is at the kerb.
-    fn is_passed(&self, told: &Told) -> bool {
-        let passes = |fact: &ActFact| matches!(fact.act, Act::Pass | Act::LaneChange) && !fact.after_contact;
-        let at_kerb = told.sv.state == ContactState::Parked
-            || told.sv.came_to_park
-            || told.sv.movement == Some(Movement::EnteringTraffic);
-        told.comes_over || at_kerb && self.account.partner.as_ref().is_some_and(|party| party.acts.iter().any(passes))
-    }
-
     /// Whether the words for what the partner did name somebody as whom it went round: "pulled out around the taxi".
-    fn is_gone_round(&self, other: &Other) -> bool {
+    pub(super) fn is_gone_round(&self, other: &Other) -> bool {
         let partner = self.account.partner.iter().flat_map(|partner| &partner.acts);
         let mut passes = partner.filter(|fact| fact.act == Act::Pass && !fact.after_contact);
         passes.any(|fact| self.is_called(other, &text(&fact.source)))
@@ -363,19 +321,6 @@ impl Story<'_> {
         let mut ends = partner.filter(passes).filter_map(|fact| Some(span(&fact.source)?.1));
         let named = span(&other.kind.source);
         named.is_some_and(|(first, _)| ends.any(|end| (end..=end + GOES_OUT_WITHIN).contains(&first)))
-    }
-
-    /// Whether a partner that comes across came out from behind somebody, or from between several, who are not told to drive or to be at a kerb.
-    fn is_screen(&self, told: &Told, other: &Other) -> bool {
-        let stays = before_contact(other).all(|fact| matches!(fact.act, Act::Hold | Act::Stop | Act::Park | Act::Slow));
-        let at_kerb = is_parked(other) && !stands_in_lane(other);
-        let beside = matches!(
-            other.place.as_ref().map(|fact| fact.value),
-            None | Some(Origin::Beside { .. } | Origin::Opposite)
-        );
-        // Who pulls out on wheels comes along beside the lanes.
-        let across = is_on_foot(told.cp.kind) || !matches!(told.origin, Origin::Parked { .. });
-        other.hides && stays && beside && !at_kerb && across && told.comes_from_side().is_some()
     }
 
     /// With whom an animal goes of which no more is told: "a man with a dog".
@@ -426,21 +371,6 @@ impl Story<'_> {
         }
     }
 
-    /// Whether somebody is told to drive, and to do nothing else.
-    fn only_drives(&self, other: &Other) -> bool {
-        before_contact(other).all(|fact| matches!(fact.act, Act::Follow | Act::Enter | Act::SetOff | Act::Slow))
-    }
-
-    /// Whether somebody who drives in the next lane has room there, beside an ego that keeps its own.
-    fn keeps_abreast(&self, told: &Told, place: Option<Origin>) -> bool {
-        let Some(Origin::Beside { side }) = place else { return false };
-        let free = told.comes_from_side() != Some(side) && told.origin != Origin::Beside { side };
-        // What came off it rolls out from beside it.
-        let free = free || told.is_sliding();
-        let drives = matches!(told.sv.state, ContactState::Moving | ContactState::SettingOff);
-        free && drives && is_straight(told)
-    }
-
     /// Whether words name somebody: of several with that name the first that is told of.
     fn is_called(&self, other: &Other, words: &str) -> bool {
         let name = |other: &Other| text(&other.kind.source).split_whitespace().next_back().map(str::to_owned);
@@ -454,7 +384,7 @@ impl Story<'_> {
     }
 
     /// The step at which the ego is told to pass somebody.
-    fn passes_at(&self, other: &Other) -> Option<u32> {
+    pub(super) fn passes_at(&self, other: &Other) -> Option<u32> {
         let passes = |fact: &&ActFact| fact.act == Act::Pass && !fact.after_contact && !fact.begun;
         let acts = before_contact(other).map(|fact| &fact.source);
         let named: Vec<usize> =
@@ -469,7 +399,7 @@ impl Story<'_> {
 
     /// Whether one that is parked is not in the way of an ego that goes round something: it is parked on the side to which that goes first, and
     /// not told to be passed, or the ego keeps its lane, nor is told to go round it, and the partner is beside that.
-    fn keeps_to_kerb(&self, told: &Told, other: &Other, place: Option<Origin>) -> bool {
+    pub(super) fn keeps_to_kerb(&self, told: &Told, other: &Other, place: Option<Origin>) -> bool {
         let side = match place {
             Some(Origin::Beside { side } | Origin::Parked { side: Some(side) }) => Some(side),
             _ => None,
@@ -502,22 +432,8 @@ impl Story<'_> {
         told.sv.state == ContactState::Moving && self.passes_at(other).is_some() && !self.is_back(other)
     }
 
-    /// Whether the words right behind somebody say that it blocks the junction: "a van that was blocking the intersection".
-    fn blocks_junction(&self, other: &Other) -> bool {
-        let reason = self.account.sv.reasons.iter().find(|fact| fact.value == StandReason::BlockedJunction);
-        let told = reason.and_then(|fact| span(&fact.source)).zip(span(&other.kind.source));
-        told.is_some_and(|((start, _), (_, end))| (end..end + BLOCKS_WITHIN).contains(&start))
-    }
-
-    /// Whether somebody was about to change lanes, or to come over from beside: "a van in the next lane headed towards its lane".
-    fn merges_yet(&self, other: &Other) -> bool {
-        let beside = matches!(other.place.as_ref().map(|fact| fact.value), Some(Origin::Beside { .. }));
-        let comes = |act: Act| act == Act::LaneChange || beside && matches!(act, Act::Drift | Act::Swerve);
-        other.acts.iter().any(|fact| comes(fact.act) && fact.begun && !fact.after_contact)
-    }
-
     /// Whether the ego moves over in its lane, or out of it, away from the side from which somebody comes.
-    fn makes_room(&self, told: &Told, other: &Other) -> bool {
+    pub(super) fn makes_room(&self, told: &Told, other: &Other) -> bool {
         let away = told.sv.aside.map(LeftRight::other).filter(|_| told.sv.turning == Turning::No);
         away.is_some() && away == self.came_from(told, other)
     }
@@ -532,199 +448,6 @@ impl Story<'_> {
                 .and_then(|fact| fact.side)
                 .or_else(|| told.sv.aside.filter(|_| cuts_in(other)))
                 .map(LeftRight::other),
-        }
-    }
-
-    fn vehicle(&self, told: &Told, other: &Other) -> Option<Role> {
-        let words = text(&other.kind.source);
-        let said = |of: &[&str]| of.iter().any(|word| words.contains(word));
-        let did = |acts: &[Act]| before_contact(other).any(|fact| acts.contains(&fact.act));
-        let place = other.place.as_ref().map(|fact| fact.value);
-        // Of traffic without a deed it is told because the ego waits for it.
-        let acts_not = before_contact(other).next().is_none();
-        let near = self.is_near(other);
-        let reacts = self.reactions().next().is_some();
-        let because = |reason: StandReason| told.reasons.contains(&reason);
-        let stands = did(&[Act::Hold, Act::Stop, Act::Park]) && !did(&[Act::SetOff, Act::Follow, Act::Reverse]);
-        // "Was going around a truck": it is in the way.
-        let stands = stands || acts_not && told.sv.goes_round && self.passes_at(other).is_some();
-        if self.goes_first(told, other) {
-            return Some(Self::first_from(told));
-        }
-        if self.is_reason_to_go_out(told, other) {
-            return Some(Role::Passed);
-        }
-        if stands && !other.several && self.is_passed(told) && (!near || self.is_gone_round(other)) {
-            return Some(Role::Passed);
-        }
-        if stands && !other.several && self.is_between(told, other) {
-            return Some(Role::Beside);
-        }
-        if self.is_screen(told, other) {
-            return Some(Role::Screen);
-        }
-        if is_parked(other) && !did(&[Act::PullOut, Act::SetOff, Act::Follow, Act::Reverse]) {
-            let double = said(&["double"]) || stands_in_lane(other);
-            let waits =
-                because(StandReason::BlockedPath) || because(StandReason::LeadVehicle) || place == Some(Origin::Ahead);
-            let named_before = double && place.is_none() && self.is_named_before(other);
-            // Who stands in the lane of those who come towards the ego is not in its way.
-            let blocks = (near && (waits || double) || named_before) && place != Some(Origin::Opposite);
-            let there = place != Some(Origin::Opposite) || self.passes_at(other).is_some();
-            let round = goes_round(told) && there && told.thing.is_none_or(|thing| thing != other.kind.value);
-            return match (other.several, round && !self.keeps_to_kerb(told, other, place)) {
-                // A row of them that is double-parked in the lane towards the ego is at no kerb.
-                (true, _) if double && place == Some(Origin::Opposite) => None,
-                (true, _) => Some(Role::Kerb),
-                (false, true) => Some(Role::Obstacle),
-                (false, false) if blocks => Some(Role::Lead),
-                // Who is double-parked, or parked in a lane, stands there.
-                (false, false) if double => matches!(place, Some(Origin::Beside { .. })).then_some(Role::Beside),
-                (false, false) => (!did(&[Act::Park])).then_some(Role::Kerb),
-            };
-        }
-        // Whom it passes on its way out of its line, and whom it has passed and come back behind.
-        let passed = told.sv.state.stands() && self.passes_at(other).is_some()
-            || self.is_back(other)
-            || (self.goes_by(told, other) || told.rounds_other()) && matches!(place, None | Some(Origin::Ahead));
-        if stands && !other.several && passed && told.sv_aside().is_some() {
-            return Some(Role::Obstacle);
-        }
-        // Nobody stands beside an ego that has come into the junction.
-        let enters = told.sv.enters() && told.sv.state == ContactState::Moving;
-        // In the next lane, whether or not the ego slows as it goes by.
-        let beside = matches!(place, Some(Origin::Beside { .. })) || place.is_none() && self.passes_at(other).is_some();
-        if stands
-            && beside
-            && told.sv_aside().is_none()
-            && !enters
-            && !self.is_back(other)
-            && !did(&[Act::LaneChange, Act::Enter, Act::PullOut, Act::Drift])
-        {
-            return Some(Role::Beside);
-        }
-        let drives = did(&[Act::Follow, Act::Enter, Act::SetOff]) && self.only_drives(other);
-        if drives && self.keeps_abreast(told, place) {
-            return Some(Role::Abreast);
-        }
-        let aside = matches!(place, Some(Origin::Beside { .. })) || place == Some(Origin::Ahead) && backs_out(other);
-        if did(&[Act::Reverse]) && aside && (near || reacts) {
-            return Some(Role::Backer);
-        }
-        // Who waits there to turn itself comes towards nobody.
-        if is_in_turn_lane(other) {
-            return None;
-        }
-        if place == Some(Origin::Opposite) || said(&["oncoming", "opposing"]) {
-            let only_passes = !did(&[Act::Hold, Act::Stop, Act::Turn, Act::LaneChange, Act::Park, Act::Reverse]);
-            // Of who turns across it, it is told only because that waits for it.
-            let waits = near || other.several && (told.sv.turning == Turning::Left || acts_not);
-            // Who hides somebody stands there.
-            let stays = other.hides && acts_not;
-            return (only_passes && !stays && (waits || did(&[Act::Follow]))).then_some(Role::Oncoming);
-        }
-        let queue = because(StandReason::Queue) || because(StandReason::LeadVehicle);
-        let ahead = place == Some(Origin::Ahead) || said(&["lead", "preceding"]);
-        let beside = matches!(place, Some(Origin::Beside { .. }));
-        let across = matches!(place, Some(Origin::Cross { .. }));
-        // "Traffic in the through lane to its right" goes its way.
-        let alongside = beside && other.place.as_ref().is_some_and(|fact| text(&fact.source).contains("lane"));
-        let crosses = said(&["cross", "bound traffic", "approaching traffic"]) || beside || across;
-        let turns = told.sv.turning != Turning::No || because(StandReason::StopSign);
-        let passes = turns && (because(StandReason::Yield) || did(&[Act::Follow]));
-        // Crossing traffic that has not cleared the junction.
-        let held = other.several && crosses && did(&[Act::Hold]) && told.sv.state == ContactState::Stopped;
-        if held && (told.place == PlaceKind::Intersection || told.is_controlled()) && !beside && !queue {
-            return Some(Role::Blocker);
-        }
-        if !other.several && told.sv.state == ContactState::Stopped && self.blocks_junction(other) {
-            return Some(Role::Blocker);
-        }
-        let for_turn =
-            told.sv.turning != Turning::No && said(&["cross"]) || across && (acts_not || did(&[Act::Follow]));
-        let for_turn = for_turn && !because(StandReason::BlockedJunction);
-        let waits = near || other.several && for_turn;
-        let waits = waits && !ahead && !alongside && !queue;
-        if waits && other.several && (crosses || passes || because(StandReason::Yield)) {
-            let turns_left =
-                told.sv.turning == Turning::Left && !because(StandReason::StopSign) && !said(&["cross"]) && !across;
-            let junction = told.place == PlaceKind::Intersection || turns || said(&["cross"]) || across;
-            return junction.then_some(if turns_left { Role::Oncoming } else { Role::Crosser });
-        }
-        // At a stop sign whom it yields to, of whom no more is told, comes along the crossing road.
-        let sign = told.sv.control.is_some_and(|said| said.device == ControlDevice::StopSign);
-        let lets_go = because(StandReason::Yield) || told.sv.enters();
-        if sign && near && acts_not && place.is_none() && !ahead && !queue && lets_go {
-            return Some(Role::Crosser);
-        }
-        let leaves = did(&[Act::LaneChange, Act::Enter, Act::PullOut, Act::Cross, Act::Pass, Act::Drift])
-            || did(&[Act::Reverse]) && !parks_backwards(other);
-        let pulls_out = did(&[Act::PullOut]) && !told.comes_from_aside();
-        let came_over = did(&[Act::LaneChange])
-            || cuts_in(other) && self.makes_room(told, other)
-            || pulls_out
-            || beside && did(&[Act::Swerve, Act::SetOff])
-            || (ahead && near || beside && (near || self.is_named_before(other))) && did(&[Act::Drift])
-            || self.merges_yet(other);
-        let merges = came_over && !did(&[Act::Hold, Act::Stop, Act::Turn, Act::Cross]);
-        let keeps_lane = is_straight(told) || self.makes_room(told, other);
-        if merges
-            && (near || reacts || comes_in(other) || self.makes_room(told, other))
-            && !other.several
-            && place != Some(Origin::Behind)
-            && keeps_lane
-        {
-            return Some(Role::Merger);
-        }
-        let junction = told.place == PlaceKind::Intersection || told.is_controlled();
-        let waits = near && told.sv.state == ContactState::Stopped && other.several;
-        if waits && because(StandReason::BlockedJunction) {
-            return Some(Role::Beyond);
-        }
-        // "a queue of stopped traffic across the junction".
-        let far = other.place.as_ref().is_some_and(|fact| {
-            let words = text(&fact.source);
-            FAR_SIDE.iter().any(|side| words.contains(side))
-        });
-        if waits && far && told.sv.turning == Turning::No && told.origin == Origin::Behind {
-            return Some(Role::Beyond);
-        }
-        let waits = waits && !queue;
-        // Who drives elsewhere does not stand ahead.
-        let elsewhere = did(&[Act::Follow]) && !did(&[Act::Hold, Act::Stop]) && !ahead && !queue;
-        if waits && junction && elsewhere && !alongside {
-            return Some(Role::Blocker);
-        }
-        if !(near && !beside || ahead && reacts) || leaves || elsewhere || place == Some(Origin::Behind) {
-            return None;
-        }
-        // Who stands somewhere, and is not told to have gone, stands yet when the ego drives on: not in its lane.
-        let only_holds = !acts_not && before_contact(other).all(|fact| matches!(fact.act, Act::Hold | Act::Park));
-        if only_holds && place.is_none() && sets_off(told) && is_straight(told) && !queue && !told.is_controlled() {
-            return None;
-        }
-        // At green nobody stands before the line: who stops ahead does so behind the junction.
-        let drawn = matches!(told.place, PlaceKind::Street | PlaceKind::Intersection);
-        let behind = drawn && !matches!(told.origin, Origin::Cross { .. });
-        let green = told.sv.control.is_some_and(|said| said.state == Some(SignalState::Green));
-        if green
-            && other.several
-            && behind
-            && told.sv.state == ContactState::Stopped
-            && !queue
-            && told.sv.turning == Turning::No
-        {
-            return Some(Role::Beyond);
-        }
-        let slows = said(&["slow"]) || did(&[Act::Slow, Act::Turn, Act::Park, Act::Stop]) && !did(&[Act::Hold]);
-        let moves = matches!(told.sv.state, ContactState::Moving) && !sets_off(told);
-        // Who drives on ahead stands nowhere.
-        let drives = did(&[Act::Follow]) && !did(&[Act::Hold, Act::Stop]) && !queue;
-        match moves {
-            true if slows => Some(Role::Slower),
-            // Of whom no deed is told, and for whom an ego that drives did nothing, nobody says that it stands.
-            true if drives || acts_not && !near && !queue && told.sv.turning == Turning::No => None,
-            _ => Some(Role::Lead),
         }
     }
 

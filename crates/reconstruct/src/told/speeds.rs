@@ -109,20 +109,51 @@ impl Told {
 
     /// Speeds at the contact: as told, or such that who closes on whom does.
     pub(crate) fn speeds(&mut self) {
-        let (driven_mps, slides) = (self.driven_mps(), self.is_sliding());
-        // Who came up to one that was ahead beside its line, and hardly moves, came faster.
-        let beside_ahead = matches!(self.origin, Origin::Beside { .. }) && self.ahead == Some(true);
-        let creeps = self.sv.impact_mps.is_some_and(|mps| mps <= CREEPS_MPS) && self.sv.state == ContactState::Moving;
-        let neared = beside_ahead && creeps && self.sv.turning == Turning::No && !self.sv.stood_first;
-        let neared = neared && self.cp.turning == Turning::No && self.cp.state == ContactState::Moving;
-        if neared && self.sv.phases.is_empty() {
+        if self.nears_ahead() && self.sv.phases.is_empty() {
             self.sv.slowed_from = self.sv.slowed_from.or(Some(Slowed(None)));
         }
-        let (crosses, all_way) = (matches!(self.origin, Origin::Cross { .. }), self.all_way);
-        let usual = |side: &Side| match side.state {
+        self.sv.speed_mps = self.sv_mps();
+        self.cp.speed_mps = self.cp_mps();
+        let untold = self.cp.impact_mps.is_none();
+        if untold {
+            self.cp.speed_mps = self.cp_mps_by_ego();
+        }
+        self.cp.speed_mps = self.dropped_mps().unwrap_or(self.cp.speed_mps);
+        if untold && self.gives_way_to_merge {
+            self.cp.speed_mps = MERGES_MPS;
+        }
+        // Who gained speed came at the usual one.
+        if untold && self.cp.gains {
+            self.cp.speed_mps += GAINS_MPS;
+        }
+        if untold && !self.is_thrown() {
+            self.cp.speed_mps *= self.choices.partner_speed;
+        }
+        if self.sv.impact_mps.is_none() && !self.sv.state.stands() {
+            self.assumed.push(format!("the ego's speed at the contact: {:.1} m/s", self.sv.speed_mps));
+        }
+        if untold && !self.cp.state.stands() {
+            let words = manner_words(self.cp.manner);
+            self.assumed.push(format!("the partner's speed at the contact: {:.1} m/s{words}", self.cp.speed_mps));
+        }
+    }
+
+    /// Whether the ego came up to one that was ahead beside its line, and hardly moves: it came faster.
+    fn nears_ahead(&self) -> bool {
+        let (sv, cp) = (&self.sv, &self.cp);
+        let beside_ahead = matches!(self.origin, Origin::Beside { .. }) && self.ahead == Some(true);
+        let creeps = sv.impact_mps.is_some_and(|mps| mps <= CREEPS_MPS) && sv.state == ContactState::Moving;
+        let neared = beside_ahead && creeps && sv.turning == Turning::No && !sv.stood_first;
+        neared && cp.turning == Turning::No && cp.state == ContactState::Moving
+    }
+
+    /// Usual speed at the contact of one of the two, by what it does there. [m/s]
+    fn usual_mps(&self, side: &Side) -> f64 {
+        let crosses = matches!(self.origin, Origin::Cross { .. });
+        match side.state {
             ContactState::Stopped | ContactState::Parked => 0.0,
             // It has come from its line.
-            ContactState::SettingOff if (side.control.is_some() || side.enters() || all_way) && crosses => 4.0,
+            ContactState::SettingOff if (side.control.is_some() || side.enters() || self.all_way) && crosses => 4.0,
             ContactState::SettingOff => 1.5,
             ContactState::Reversing => 1.2,
             ContactState::Moving if side.kind == PartnerKind::Pedestrian => WALKS_MPS,
@@ -131,110 +162,116 @@ impl Told {
             ContactState::Moving => match side.kind {
                 PartnerKind::Pedestrian => WALKS_MPS,
                 PartnerKind::Animal => 4.0,
-                PartnerKind::FixedObject if slides => SLIDES_MPS,
+                PartnerKind::FixedObject if self.is_sliding() => SLIDES_MPS,
                 PartnerKind::OtherNonMotorist if size_of(side).0 <= ROBOT_M => WALKS_MPS,
                 PartnerKind::Cyclist | PartnerKind::OtherNonMotorist => 4.5,
                 _ if side.turning != Turning::No => TURNS_MPS,
-                _ => driven_mps,
+                _ => self.driven_mps(),
             },
-        };
-        let slow = matches!(self.place, PlaceKind::ParkingLot | PlaceKind::Garage | PlaceKind::Driveway);
-        let fit = |speed: f64| if slow { speed.min(3.0) } else { speed };
-        self.sv.speed_mps = match (self.sv.impact_mps, self.sv.state.stands()) {
+        }
+    }
+
+    /// Whether all drive slowly there.
+    const fn is_in_lot(&self) -> bool {
+        matches!(self.place, PlaceKind::ParkingLot | PlaceKind::Garage | PlaceKind::Driveway)
+    }
+
+    /// The same or less, where all drive slowly. [m/s]
+    fn fit_mps(&self, mps: f64) -> f64 {
+        if self.is_in_lot() { mps.min(3.0) } else { mps }
+    }
+
+    /// The usual speed of one of the two, as far as words tell how fast it drove. [m/s]
+    fn usual_as_told_mps(&self, side: &Side) -> f64 {
+        as_told(side.manner, self.fit_mps(self.usual_mps(side)), self.is_in_lot(), self.posted_mps)
+    }
+
+    /// The ego's speed. [m/s]
+    fn sv_mps(&self) -> f64 {
+        let sv = &self.sv;
+        let mps = match (sv.impact_mps, sv.state.stands()) {
             (_, true) => 0.0,
             (Some(told), false) => told.max(SLOWEST_MPS),
             (None, false) => {
-                let stops = self.sv.acts.last().is_some_and(Doing::is_begun_stop);
-                let slowed_mps = self.sv.slowed_from.and_then(|slowed| slowed.0).unwrap_or(f64::INFINITY);
-                as_told(self.sv.manner, fit(usual(&self.sv)), slow, self.posted_mps).min(if stops {
-                    slowed_mps.min(STOPS_MPS)
-                } else {
-                    slowed_mps
-                })
+                let slowed_mps = sv.slowed_from.and_then(|slowed| slowed.0).unwrap_or(f64::INFINITY);
+                let stops = sv.acts.last().is_some_and(Doing::is_begun_stop);
+                self.usual_as_told_mps(sv).min(if stops { slowed_mps.min(STOPS_MPS) } else { slowed_mps })
             }
         };
-        self.sv.speed_mps = self.sv.speed_mps.min(self.overtaken_mps());
-        self.cp.speed_mps = match (self.cp.impact_mps, self.cp.state.stands()) {
+        mps.min(self.overtaken_mps())
+    }
+
+    /// The partner's speed, whatever that of the ego is. [m/s]
+    fn cp_mps(&self) -> f64 {
+        let cp = &self.cp;
+        match (cp.impact_mps, cp.state.stands()) {
             // It is thrown at the ego.
             _ if self.is_thrown() => THROWN_MPS,
             (_, true) => 0.0,
             (Some(told), false) => told.max(SLOWEST_MPS),
-            (None, false) if self.queues() => fit(QUEUED_MPS),
-            (None, false) if let Some(mps) = fast_mps(&self.cp) => mps,
-            (None, false) => as_told(self.cp.manner, fit(usual(&self.cp)), slow, self.posted_mps),
-        };
+            (None, false) if self.queues() => self.fit_mps(QUEUED_MPS),
+            (None, false) if let Some(mps) = fast_mps(cp) => mps,
+            (None, false) => self.usual_as_told_mps(cp),
+        }
+    }
+
+    /// The same by that of the ego, where none is told of the partner: who closes on whom does. [m/s]
+    fn cp_mps_by_ego(&self) -> f64 {
+        let (sv, cp) = (&self.sv, &self.cp);
+        let behind = self.origin == Origin::Behind;
+        let mut mps = cp.speed_mps;
         // Who sets off behind an ego that moves is faster.
-        let sets_off = self.cp.state == ContactState::SettingOff || self.queues();
-        if self.cp.impact_mps.is_none() && sets_off && self.origin == Origin::Behind {
-            self.cp.speed_mps = self.cp.speed_mps.max(self.sv.speed_mps + SETS_OFF_FASTER_MPS);
+        let sets_off = cp.state == ContactState::SettingOff || self.queues();
+        if sets_off && behind {
+            mps = mps.max(sv.speed_mps + SETS_OFF_FASTER_MPS);
         }
         // So is who set off behind an ego that slowed again: as fast as that was between.
-        let waits = self.cp.stood_first || sets_off;
-        let slowed = self.sv.stood_first && self.sv.slowed_from.is_some();
-        if self.cp.impact_mps.is_none() && self.origin == Origin::Behind && waits && slowed {
-            self.cp.speed_mps = self.cp.speed_mps.max(self.sv.speed_mps + STARTS_AND_SLOWS_MPS);
+        let slowed = sv.stood_first && sv.slowed_from.is_some();
+        if behind && (cp.stood_first || sets_off) && slowed {
+            mps = mps.max(sv.speed_mps + STARTS_AND_SLOWS_MPS);
         }
-        if self.cp.impact_mps.is_none() && self.cp.state == ContactState::Moving && !self.comes_across() {
-            let sv = self.sv.speed_mps;
-            match self.origin {
-                // Whom the ego passes, and who was ahead of it, is slower.
-                Origin::Beside { .. }
-                    if sv > 0.5
-                        && (self.sv.movement == Some(Movement::Passing)
-                            || self.ahead == Some(true) && self.cp.turning == Turning::No) =>
-                {
-                    // Of an ego that slows, as fast as that is at the end: it came faster.
-                    let slower = if self.sv.slowed_from.is_some() { sv } else { sv - OTHER_PACE_MPS };
-                    let least = if self.comes_over_ahead() { sv - OTHER_PACE_MPS } else { 0.0 };
-                    self.cp.speed_mps = self.cp.speed_mps.max(least).min(slower.max(0.4));
-                }
-                Origin::Beside { .. } if neared => self.cp.speed_mps = NEARED_MPS,
-                Origin::Beside { .. } if self.drives_abreast() && self.cp.impact_mps.is_none() => {
-                    self.cp.speed_mps = sv + SIDE_BY_SIDE_MPS
-                }
-                // Who turns beside an ego that turns is hardly faster.
-                Origin::Beside { .. } if self.sv.turning != Turning::No && self.cp.turning == self.sv.turning => {
-                    self.cp.speed_mps = sv + ABREAST_MPS;
-                }
-                // Who turns across from beside came up beside it, and slowed for its turn.
-                Origin::Beside { .. } if matches!(self.cp.turning, Turning::Left | Turning::Right) => {
-                    self.cp.speed_mps = self.cp.speed_mps.max((sv + OTHER_PACE_MPS).min(FASTEST_TURN_MPS));
-                }
-                Origin::Behind | Origin::Beside { .. }
-                    if self.sv.state != ContactState::Reversing && !self.cp.stood_first && !self.queues() =>
-                {
-                    self.cp.speed_mps = self.cp.speed_mps.max(sv + OTHER_PACE_MPS);
-                }
-                // Who turns round ahead of it came along as fast as it.
-                Origin::Ahead if sv > 0.5 && self.cp.turning == Turning::Round => {
-                    self.cp.speed_mps = self.cp.speed_mps.min(sv);
-                }
-                Origin::Ahead if sv > 0.5 => self.cp.speed_mps = self.cp.speed_mps.min((sv - 2.0).max(0.3)),
-                _ => {}
-            }
+        if cp.state == ContactState::Moving && !self.comes_across() {
+            mps = self.moving_mps_by_ego(mps);
         }
         // Who backs towards an ego that backs away is faster.
-        let both_back = self.cp.state == ContactState::Reversing && self.sv.state == ContactState::Reversing;
-        if self.cp.impact_mps.is_none() && both_back && self.origin == Origin::Ahead {
-            self.cp.speed_mps = self.cp.speed_mps.max(self.sv.speed_mps + BACKS_FASTER_MPS);
+        let both_back = cp.state == ContactState::Reversing && sv.state == ContactState::Reversing;
+        if both_back && self.origin == Origin::Ahead {
+            mps = mps.max(sv.speed_mps + BACKS_FASTER_MPS);
         }
-        self.cp.speed_mps = self.dropped_mps().unwrap_or(self.cp.speed_mps);
-        if self.cp.impact_mps.is_none() && self.gives_way_to_merge {
-            self.cp.speed_mps = MERGES_MPS;
-        }
-        // Who gained speed came at the usual one.
-        if self.cp.impact_mps.is_none() && self.cp.gains {
-            self.cp.speed_mps += GAINS_MPS;
-        }
-        if self.cp.impact_mps.is_none() && !self.is_thrown() {
-            self.cp.speed_mps *= self.choices.partner_speed;
-        }
-        if self.sv.impact_mps.is_none() && !self.sv.state.stands() {
-            self.assumed.push(format!("the ego's speed at the contact: {:.1} m/s", self.sv.speed_mps));
-        }
-        if self.cp.impact_mps.is_none() && !self.cp.state.stands() {
-            let words = manner_words(self.cp.manner);
-            self.assumed.push(format!("the partner's speed at the contact: {:.1} m/s{words}", self.cp.speed_mps));
+        mps
+    }
+
+    /// Speed of a partner that moves forwards and comes by the ego's road, by that of the ego: faster where it comes up to that, slower where it is
+    /// come up to. [m/s]
+    fn moving_mps_by_ego(&self, mps: f64) -> f64 {
+        let (sv, turning, sv_mps) = (&self.sv, self.cp.turning, self.sv.speed_mps);
+        let beside = matches!(self.origin, Origin::Beside { .. });
+        let was_ahead = self.ahead == Some(true) && turning == Turning::No;
+        match self.origin {
+            // Whom the ego passes, and who was ahead of it, is slower.
+            _ if beside && sv_mps > 0.5 && (sv.movement == Some(Movement::Passing) || was_ahead) => {
+                // Of an ego that slows, as fast as that is at the end: it came faster.
+                let slower = if sv.slowed_from.is_some() { sv_mps } else { sv_mps - OTHER_PACE_MPS };
+                let least = if self.comes_over_ahead() { sv_mps - OTHER_PACE_MPS } else { 0.0 };
+                mps.max(least).min(slower.max(0.4))
+            }
+            _ if self.nears_ahead() => NEARED_MPS,
+            _ if beside && self.drives_abreast() => sv_mps + SIDE_BY_SIDE_MPS,
+            // Who turns beside an ego that turns is hardly faster.
+            _ if beside && sv.turning != Turning::No && turning == sv.turning => sv_mps + ABREAST_MPS,
+            // Who turns across from beside came up beside it, and slowed for its turn.
+            _ if beside && matches!(turning, Turning::Left | Turning::Right) => {
+                mps.max((sv_mps + OTHER_PACE_MPS).min(FASTEST_TURN_MPS))
+            }
+            Origin::Behind | Origin::Beside { .. }
+                if sv.state != ContactState::Reversing && !self.cp.stood_first && !self.queues() =>
+            {
+                mps.max(sv_mps + OTHER_PACE_MPS)
+            }
+            // Who turns round ahead of it came along as fast as it.
+            Origin::Ahead if sv_mps > 0.5 && turning == Turning::Round => mps.min(sv_mps),
+            Origin::Ahead if sv_mps > 0.5 => mps.min((sv_mps - 2.0).max(0.3)),
+            _ => mps,
         }
     }
 }
