@@ -1,7 +1,7 @@
 //! Findings: what a rollout shows about the ego, one sentence each.
 
 use crate::scene::{STANDSTILL_MPS, first_step, time_of};
-use recrash_model::metrics::{Finding, FindingKind, Metrics, Timed};
+use recrash_model::metrics::{EgoMetrics, Finding, FindingKind, Metrics, Timed};
 use recrash_model::profile::FailureCriteria;
 use recrash_model::rollout::{EventKind, Role, Rollout, TerminationKind};
 
@@ -143,36 +143,31 @@ fn standing_s(rollout: &Rollout) -> f64 {
     time_of(ego.states.iter().rev().take_while(|state| state.velocity().length() < STANDSTILL_MPS).count())
 }
 
+/// What is odd about how the ego drove, whoever else was there.
 fn odd_behaviour(metrics: &Metrics, criteria: &FailureCriteria) -> Vec<Finding> {
     let ego = &metrics.ego;
-    let mut all = Vec::new();
-    let mut add = |kind, Timed { value, time_s }: Timed, threshold: f64, sentence: String| {
-        if value > threshold {
-            all.push(Finding { kind, time_s, value, threshold, sentence });
-        }
+    let above = |kind, Timed { value, time_s }: Timed, threshold: f64, sentence: String| {
+        (value > threshold).then_some(Finding { kind, time_s, value, threshold, sentence })
     };
     let braking = ego.max_deceleration;
-    add(
+    let braked = format!("The ego braked with {:.1} m/s\u{b2} at {:.1} s", braking.value, braking.time_s);
+    let hard_braking = above(
         FindingKind::HardBraking,
         braking,
         criteria.hard_braking_mps2,
-        format!(
-            "The ego braked with {:.1} m/s\u{b2} at {:.1} s; hard braking starts at {:.1} m/s\u{b2}.",
-            braking.value, braking.time_s, criteria.hard_braking_mps2
-        ),
+        format!("{braked}; hard braking starts at {:.1} m/s\u{b2}.", criteria.hard_braking_mps2),
     );
-    add(
+    let beyond_tyres = above(
         FindingKind::BrakingBeyondTyres,
         braking,
         ego.tyre_limit_mps2,
         format!(
-            "The ego braked with {:.1} m/s\u{b2} at {:.1} s; tyres give at most {:.1} m/s\u{b2} on this road, so a real vehicle \
-             would have been faster here.",
-            braking.value, braking.time_s, ego.tyre_limit_mps2
+            "{braked}; tyres give at most {:.1} m/s\u{b2} on this road, so a real vehicle would have been faster here.",
+            ego.tyre_limit_mps2
         ),
     );
-    if let Some(phantom) = ego.phantom_braking {
-        add(
+    let phantom_braking = ego.phantom_braking.and_then(|phantom| {
+        above(
             FindingKind::PhantomBraking,
             phantom,
             criteria.phantom_braking_mps2,
@@ -180,10 +175,10 @@ fn odd_behaviour(metrics: &Metrics, criteria: &FailureCriteria) -> Vec<Finding> 
                 "The ego braked with {:.1} m/s\u{b2} at {:.1} s with nothing close ahead that asks for it; the profile allows {:.1} m/s\u{b2}.",
                 phantom.value, phantom.time_s, criteria.phantom_braking_mps2
             ),
-        );
-    }
+        )
+    });
     let departure = ego.max_lane_departure;
-    add(
+    let lane_departure = above(
         FindingKind::LaneDeparture,
         departure,
         criteria.lane_departure_m,
@@ -192,21 +187,23 @@ fn odd_behaviour(metrics: &Metrics, criteria: &FailureCriteria) -> Vec<Finding> 
             departure.value, departure.time_s, criteria.lane_departure_m
         ),
     );
-    if ego.max_reversals >= criteria.oscillation_reversals.max(1) {
-        all.push(Finding {
-            kind: FindingKind::Oscillation,
-            time_s: ego.max_reversals_time_s,
-            value: f64::from(ego.max_reversals),
-            threshold: f64::from(criteria.oscillation_reversals),
-            sentence: format!(
-                "The ego changed {} times between braking and accelerating within {:.0} s, up to {:.1} s; {} make an \
-                 oscillation.",
-                ego.max_reversals,
-                criteria.oscillation_window_s,
-                ego.max_reversals_time_s,
-                criteria.oscillation_reversals
-            ),
-        });
-    }
-    all
+    let all = [hard_braking, beyond_tyres, phantom_braking, lane_departure, oscillation(ego, criteria)];
+    all.into_iter().flatten().collect()
+}
+
+/// Going to and fro between braking and accelerating.
+fn oscillation(ego: &EgoMetrics, criteria: &FailureCriteria) -> Option<Finding> {
+    (ego.max_reversals >= criteria.oscillation_reversals.max(1)).then(|| Finding {
+        kind: FindingKind::Oscillation,
+        time_s: ego.max_reversals_time_s,
+        value: f64::from(ego.max_reversals),
+        threshold: f64::from(criteria.oscillation_reversals),
+        sentence: format!(
+            "The ego changed {} times between braking and accelerating within {:.0} s, up to {:.1} s; {} make an oscillation.",
+            ego.max_reversals,
+            criteria.oscillation_window_s,
+            ego.max_reversals_time_s,
+            criteria.oscillation_reversals
+        ),
+    })
 }

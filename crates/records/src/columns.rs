@@ -225,105 +225,149 @@ pub fn edition_name(edition: Edition) -> &'static str {
 /// Recognises a header by its column names: the edition that shares most of them wins, the later one on a tie.
 /// Order, letter case, blanks and the kind of dash do not matter.
 pub fn recognise(names: &[String]) -> Result<Recognised, NotAHeader> {
-    if names.len() > MOST_COLUMNS {
-        return Err(NotAHeader::Unknown);
-    }
-    let keys: Vec<String> = names.iter().map(|name| header_key(name)).collect();
-    let known_in = |edition| published_header(edition).filter(|name| keys.contains(&header_key(name))).count();
-    let editions = [Edition::First, Edition::Second, Edition::Third];
-    let (known, edition) =
-        editions.into_iter().map(|edition| (known_in(edition), edition)).max().unwrap_or((0, Edition::Second));
-    if known < LEAST_KNOWN_COLUMNS {
-        return Err(NotAHeader::Unknown);
-    }
-
-    let find = |name: &str| {
-        let wanted = header_key(name);
-        keys.iter().position(|key| *key == wanted)
-    };
-    let description = find("Roadway Description").map(WorkZoneColumn::Description);
-    let work_zone = find("Roadway-Work Zone").map(WorkZoneColumn::Flag).or(description);
-    let mut missing: Vec<&'static str> = REQUIRED.into_iter().filter(|name| find(name).is_none()).collect();
-    if work_zone.is_none() {
-        missing.push(if edition == Edition::Third { "Roadway-Work Zone" } else { "Roadway Description" });
-    }
-    let (Some(work_zone), true) = (work_zone, missing.is_empty()) else {
-        return Err(NotAHeader::Missing { edition, names: missing });
-    };
-    let required = |name: &str| find(name).unwrap_or(0);
-
-    let mut absent = Vec::new();
-    let mut wanted = |name: &'static str| {
-        let position = find(name);
-        if position.is_none() && published_header(edition).any(|column| column == name) {
-            absent.push(name);
-        }
-        position
-    };
-    let zones = |side: &str| -> Vec<(usize, ContactZone)> {
-        ContactZone::ALL
-            .into_iter()
-            .filter_map(|zone| Some((find(&format!("{side} Contact Area - {}", zone.label()))?, zone)))
-            .collect()
-    };
-    let weather = WEATHER.iter().filter_map(|(name, weather)| Some((find(name)?, *weather))).collect();
-
-    let columns = Columns {
-        edition,
-        width: names.len(),
-        report_id: required("Report ID"),
-        report_version: required("Report Version"),
-        road: required("Roadway Type"),
-        cp_movement: required("CP Pre-Crash Movement"),
-        sv_movement: required("SV Pre-Crash Movement"),
-        narrative: required("Narrative"),
-        work_zone,
-        entity: wanted("Reporting Entity"),
-        report_type: wanted("Report Type"),
-        make: wanted("Make"),
-        model: wanted("Model"),
-        model_year: wanted("Model Year"),
-        engaged: wanted("Automation System Engaged?"),
-        engagement_status: wanted("Engagement Status"),
-        operator: wanted("Operating Entity"),
-        date: wanted("Incident Date"),
-        time: wanted("Incident Time (24:00)"),
-        incident_id: wanted("Same Incident ID"),
-        city: wanted("City"),
-        state: wanted("State"),
-        surface: wanted("Roadway Surface"),
-        surface_wet: wanted("Roadway-Wet Surface Condition"),
-        surface_usual: wanted("Roadway-No Unusual Conditions"),
-        posted_speed: wanted("Posted Speed Limit (MPH)"),
-        lighting: wanted("Lighting"),
-        crash_with: wanted("Crash With"),
-        severity: wanted("Highest Injury Severity Alleged").or_else(|| find("Highest Injury Severity")),
-        towed: match find("Was Any Vehicle Towed?") {
-            Some(both) => SidesColumns::Both(both),
-            None => SidesColumns::Each { sv: wanted("SV Was Vehicle Towed?"), cp: wanted("CP Was Vehicle Towed?") },
-        },
-        airbags: match find("Any Air Bags Deployed?") {
-            Some(both) => SidesColumns::Both(both),
-            None => {
-                SidesColumns::Each { sv: wanted("SV Any Air Bags Deployed?"), cp: wanted("CP Any Air Bags Deployed?") }
-            }
-        },
-        sv_speed: wanted("SV Precrash Speed (MPH)"),
-        sv_speed_unknown: wanted("SV Pre-crash Speed - Unknown"),
-        weather,
-        sv_zones: zones("SV"),
-        cp_zones: zones("CP"),
-    };
-
-    let published: BTreeSet<String> = editions.into_iter().flat_map(published_header).map(header_key).collect();
-    let mut unknown = Vec::new();
-    let mut repeated = Vec::new();
-    for (position, key) in keys.iter().enumerate() {
-        if keys[..position].contains(key) {
-            repeated.push(names[position].trim().to_owned());
-        } else if !published.contains(key) {
-            unknown.push(names[position].trim().to_owned());
-        }
-    }
+    let header = Header::of(names)?;
+    let work_zone = header.work_zone()?;
+    let (columns, absent) = header.columns(work_zone);
+    let (unknown, repeated) = header.odd_names(names);
     Ok(Recognised { columns, unknown, repeated, absent })
+}
+
+/// A line that may be a header, and the edition that it is one of.
+struct Header {
+    /// The names as they are compared.
+    keys: Vec<String>,
+    edition: Edition,
+}
+
+/// The editions that are published, in the order of time.
+const EDITIONS: [Edition; 3] = [Edition::First, Edition::Second, Edition::Third];
+
+impl Header {
+    /// The line, where enough of its names stand in a published header.
+    fn of(names: &[String]) -> Result<Self, NotAHeader> {
+        if names.len() > MOST_COLUMNS {
+            return Err(NotAHeader::Unknown);
+        }
+        let keys: Vec<String> = names.iter().map(|name| header_key(name)).collect();
+        let known_in = |edition| published_header(edition).filter(|name| keys.contains(&header_key(name))).count();
+        let (known, edition) =
+            EDITIONS.into_iter().map(|edition| (known_in(edition), edition)).max().unwrap_or((0, Edition::Second));
+        if known < LEAST_KNOWN_COLUMNS {
+            return Err(NotAHeader::Unknown);
+        }
+        Ok(Self { keys, edition })
+    }
+
+    /// Where a column of this name stands first.
+    fn find(&self, name: &str) -> Option<usize> {
+        let wanted = header_key(name);
+        self.keys.iter().position(|key| *key == wanted)
+    }
+
+    /// Where the work zone stands, in a line that has all that a crash record needs.
+    fn work_zone(&self) -> Result<WorkZoneColumn, NotAHeader> {
+        let description = self.find("Roadway Description").map(WorkZoneColumn::Description);
+        let work_zone = self.find("Roadway-Work Zone").map(WorkZoneColumn::Flag).or(description);
+        let mut names: Vec<&'static str> = REQUIRED.into_iter().filter(|name| self.find(name).is_none()).collect();
+        if work_zone.is_none() {
+            names.push(if self.edition == Edition::Third { "Roadway-Work Zone" } else { "Roadway Description" });
+        }
+        match work_zone {
+            Some(work_zone) if names.is_empty() => Ok(work_zone),
+            _ => Err(NotAHeader::Missing { edition: self.edition, names }),
+        }
+    }
+
+    /// The positions of all that is read, and which columns of the edition are not here.
+    fn columns(&self, work_zone: WorkZoneColumn) -> (Columns, Vec<&'static str>) {
+        let required = |name: &str| self.find(name).unwrap_or(0);
+        let mut absent = Vec::new();
+        let mut wanted = |name: &'static str| {
+            let position = self.find(name);
+            if position.is_none() && published_header(self.edition).any(|column| column == name) {
+                absent.push(name);
+            }
+            position
+        };
+        let columns = Columns {
+            edition: self.edition,
+            width: self.keys.len(),
+            report_id: required("Report ID"),
+            report_version: required("Report Version"),
+            road: required("Roadway Type"),
+            cp_movement: required("CP Pre-Crash Movement"),
+            sv_movement: required("SV Pre-Crash Movement"),
+            narrative: required("Narrative"),
+            work_zone,
+            entity: wanted("Reporting Entity"),
+            report_type: wanted("Report Type"),
+            make: wanted("Make"),
+            model: wanted("Model"),
+            model_year: wanted("Model Year"),
+            engaged: wanted("Automation System Engaged?"),
+            engagement_status: wanted("Engagement Status"),
+            operator: wanted("Operating Entity"),
+            date: wanted("Incident Date"),
+            time: wanted("Incident Time (24:00)"),
+            incident_id: wanted("Same Incident ID"),
+            city: wanted("City"),
+            state: wanted("State"),
+            surface: wanted("Roadway Surface"),
+            surface_wet: wanted("Roadway-Wet Surface Condition"),
+            surface_usual: wanted("Roadway-No Unusual Conditions"),
+            posted_speed: wanted("Posted Speed Limit (MPH)"),
+            lighting: wanted("Lighting"),
+            crash_with: wanted("Crash With"),
+            severity: wanted("Highest Injury Severity Alleged").or_else(|| self.find("Highest Injury Severity")),
+            towed: self.sides(
+                "Was Any Vehicle Towed?",
+                ["SV Was Vehicle Towed?", "CP Was Vehicle Towed?"],
+                &mut wanted,
+            ),
+            airbags: self.sides(
+                "Any Air Bags Deployed?",
+                ["SV Any Air Bags Deployed?", "CP Any Air Bags Deployed?"],
+                &mut wanted,
+            ),
+            sv_speed: wanted("SV Precrash Speed (MPH)"),
+            sv_speed_unknown: wanted("SV Pre-crash Speed - Unknown"),
+            weather: WEATHER.iter().filter_map(|(name, weather)| Some((self.find(name)?, *weather))).collect(),
+            sv_zones: self.zones("SV"),
+            cp_zones: self.zones("CP"),
+        };
+        (columns, absent)
+    }
+
+    /// The one column that names both sides, or a column for each of them.
+    fn sides(
+        &self,
+        both: &str,
+        [sv, cp]: [&'static str; 2],
+        mut wanted: impl FnMut(&'static str) -> Option<usize>,
+    ) -> SidesColumns {
+        match self.find(both) {
+            Some(both) => SidesColumns::Both(both),
+            None => SidesColumns::Each { sv: wanted(sv), cp: wanted(cp) },
+        }
+    }
+
+    /// The columns of where one side was touched.
+    fn zones(&self, side: &str) -> Vec<(usize, ContactZone)> {
+        let column = |zone: ContactZone| Some((self.find(&format!("{side} Contact Area - {}", zone.label()))?, zone));
+        ContactZone::ALL.into_iter().filter_map(column).collect()
+    }
+
+    /// Names that stand in no edition, and names that stand more than once.
+    fn odd_names(&self, names: &[String]) -> (Vec<String>, Vec<String>) {
+        let published: BTreeSet<String> = EDITIONS.into_iter().flat_map(published_header).map(header_key).collect();
+        let (mut unknown, mut repeated) = (Vec::new(), Vec::new());
+        for (position, key) in self.keys.iter().enumerate() {
+            if self.keys[..position].contains(key) {
+                repeated.push(names[position].trim().to_owned());
+            } else if !published.contains(key) {
+                unknown.push(names[position].trim().to_owned());
+            }
+        }
+        (unknown, repeated)
+    }
 }

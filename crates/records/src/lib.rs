@@ -39,7 +39,7 @@ pub use stream::{Bytes, sha256};
 pub use table::{Column, RecordTable, TableRows, record_table, write_csv};
 
 use recrash_model::profile::{Dedupe, SystemProfile};
-use recrash_model::record::{FunnelStep, RecordSet, Reject, RejectReason};
+use recrash_model::record::{FunnelStep, RecordSet, Reject, RejectReason, SourceFile};
 use recrash_model::{Diagnostic, Location, Outcome, Severity};
 use row::Draft;
 use std::collections::BTreeMap;
@@ -117,46 +117,10 @@ pub fn ingest_sources(
     if files.is_empty() {
         return Err(IngestError::NoFiles);
     }
-    let mut sources = Vec::new();
-    let mut drafts: Vec<Draft> = Vec::new();
-    let mut file_of_draft: Vec<usize> = Vec::new();
-    let mut rejects: Vec<(usize, Reject)> = Vec::new();
     let mut diagnostics = Vec::new();
-    for (number, content) in read(files, options, &mut diagnostics)?.into_iter().enumerate() {
-        sources.extend(content.sources);
-        if drafts.is_empty() {
-            drafts = content.drafts;
-        } else {
-            drafts.extend(content.drafts);
-        }
-        file_of_draft.resize(drafts.len(), number);
-        rejects.extend(content.rejects.into_iter().map(|reject| (number, reject)));
-        diagnostics.extend(content.diagnostics);
-    }
-
-    let malformed = rejects.len();
-    let rows = drafts.len() + malformed;
-    let mut funnel = vec![FunnelStep { name: "rows".to_owned(), remaining: rows, lost: Vec::new() }];
-    if malformed > 0 {
-        let lost = vec![(RejectReason::Malformed, malformed)];
-        funnel.push(FunnelStep { name: "well formed".to_owned(), remaining: drafts.len(), lost });
-    }
-    let mut fates: Vec<Option<RejectReason>> = vec![None; drafts.len()];
-    if profile.records.dedupe == Dedupe::Incident {
-        let (merged, remarks) = identity::merge(&mut drafts);
-        diagnostics.extend(remarks);
-        for (fate, merged) in fates.iter_mut().zip(merged) {
-            *fate = merged.then_some(RejectReason::Merged);
-        }
-        funnel.push(funnel::tally("one report an incident", &fates, &funnel));
-    }
-    if let Some(filter) = options.filter {
-        for (draft, fate) in drafts.iter().zip(fates.iter_mut()).filter(|(_, fate)| fate.is_none()) {
-            *fate = (!filter.keeps(&draft.record)).then_some(RejectReason::FilteredOut);
-        }
-        funnel.push(funnel::tally(&format!("where {}", filter.text()), &fates, &funnel));
-    }
-    funnel::run(&drafts, profile, &mut fates, &mut funnel);
+    let Gathered { sources, mut drafts, file_of_draft, mut rejects } = gather(files, options, &mut diagnostics)?;
+    let rows = drafts.len() + rejects.len();
+    let (fates, funnel) = fates(&mut drafts, rejects.len(), profile, options.filter, &mut diagnostics);
 
     for ((draft, fate), number) in drafts.iter().zip(&fates).zip(file_of_draft) {
         let Some(reason) = *fate else { continue };
@@ -172,6 +136,70 @@ pub fn ingest_sources(
         value: RecordSet { files: sources, records, usable, rejects, funnel, untold: BTreeMap::new() },
         diagnostics,
     })
+}
+
+/// What all files hold.
+struct Gathered {
+    sources: Vec<SourceFile>,
+    drafts: Vec<Draft>,
+    /// The position of each draft's file among those that differ.
+    file_of_draft: Vec<usize>,
+    /// Malformed rows, each with the position of its file.
+    rejects: Vec<(usize, Reject)>,
+}
+
+/// Reads all files, one behind the other.
+fn gather(
+    files: Vec<SourceBytes<'_>>,
+    options: &IngestOptions<'_>,
+    diagnostics: &mut Vec<Diagnostic>,
+) -> Result<Gathered, IngestError> {
+    let mut all = Gathered { sources: Vec::new(), drafts: Vec::new(), file_of_draft: Vec::new(), rejects: Vec::new() };
+    for (number, content) in read(files, options, diagnostics)?.into_iter().enumerate() {
+        all.sources.extend(content.sources);
+        if all.drafts.is_empty() {
+            all.drafts = content.drafts;
+        } else {
+            all.drafts.extend(content.drafts);
+        }
+        all.file_of_draft.resize(all.drafts.len(), number);
+        all.rejects.extend(content.rejects.into_iter().map(|reject| (number, reject)));
+        diagnostics.extend(content.diagnostics);
+    }
+    Ok(all)
+}
+
+/// Why each draft is left out, nothing where it is usable; and how many are left after each step, behind so many malformed rows.
+fn fates(
+    drafts: &mut [Draft],
+    malformed: usize,
+    profile: &SystemProfile,
+    filter: Option<&Filter>,
+    diagnostics: &mut Vec<Diagnostic>,
+) -> (Vec<Option<RejectReason>>, Vec<FunnelStep>) {
+    let rows = drafts.len() + malformed;
+    let mut funnel = vec![FunnelStep { name: "rows".to_owned(), remaining: rows, lost: Vec::new() }];
+    if malformed > 0 {
+        let lost = vec![(RejectReason::Malformed, malformed)];
+        funnel.push(FunnelStep { name: "well formed".to_owned(), remaining: drafts.len(), lost });
+    }
+    let mut fates: Vec<Option<RejectReason>> = vec![None; drafts.len()];
+    if profile.records.dedupe == Dedupe::Incident {
+        let (merged, remarks) = identity::merge(drafts);
+        diagnostics.extend(remarks);
+        for (fate, merged) in fates.iter_mut().zip(merged) {
+            *fate = merged.then_some(RejectReason::Merged);
+        }
+        funnel.push(funnel::tally("one report an incident", &fates, &funnel));
+    }
+    if let Some(filter) = filter {
+        for (draft, fate) in drafts.iter().zip(fates.iter_mut()).filter(|(_, fate)| fate.is_none()) {
+            *fate = (!filter.keeps(&draft.record)).then_some(RejectReason::FilteredOut);
+        }
+        funnel.push(funnel::tally(&format!("where {}", filter.text()), &fates, &funnel));
+    }
+    funnel::run(drafts, profile, &mut fates, &mut funnel);
+    (fates, funnel)
 }
 
 /// Every file, read; the same content twice counts once.

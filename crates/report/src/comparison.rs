@@ -140,6 +140,7 @@ fn properties(writer: &mut Writer<Vec<u8>>, all: &[(&str, &str)]) -> std::io::Re
     Ok(())
 }
 
+/// A test: what it is about, where it stands, and what its telling run shows.
 fn case(
     writer: &mut Writer<Vec<u8>>,
     results: &TestResults,
@@ -154,51 +155,56 @@ fn case(
     let time = fixed(seconds(test), 3).unwrap_or_else(|| "0".to_owned());
     let head = attributes(&[("classname", &class), ("name", &test.id), ("time", &time)]);
     writer.create_element("testcase").with_attributes(head).write_inner_content(|writer| {
-        let outcome = test.telling().and_then(|run| run.outcome.as_ref());
-        let mut told: Vec<(&str, &str)> = vec![("provenance", test.about.provenance.label())];
-        let told_record = test.about.told.as_ref().map(ToString::to_string).unwrap_or_default();
-        if !told_record.is_empty() {
-            told.push(("report", &told_record));
-        }
-        if let Some(compared) = compared {
-            told.push(("change", compared.change.name()));
-        }
-        if let Some(cause) = outcome.and_then(|outcome| outcome.cause) {
-            told.push(("cause", cause.label()));
-        }
-        if let Some(bracket) = outcome.and_then(|outcome| outcome.bracket()) {
-            told.push(("preventability", bracket.label()));
-        }
-        if let Some(met) = outcome.and_then(|outcome| outcome.met) {
-            told.push(("situation", if met { "met" } else { "not met" }));
-        }
-        properties(writer, &told)?;
-        let kinds = outcome.map_or_else(String::new, |outcome| {
-            let kinds = outcome.kinds();
-            kinds.iter().filter(|kind| kind.is_failure()).map(|kind| kind.label()).collect::<Vec<_>>().join(", ")
-        });
-        match standing(test, compared) {
-            Standing::Passed => {}
-            Standing::Red(how) => {
-                let why = compared.map_or("", |compared| compared.why.as_str());
-                let message =
-                    [how, why, &kinds].into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(": ");
-                let failure = attributes(&[("type", how), ("message", &message)]);
-                let failure = writer.create_element("failure").with_attributes(failure);
-                failure.write_text_content(BytesText::new(&safe(&sentences(test))))?;
-            }
-            Standing::Known(how) => {
-                let message = format!("{how} ({kinds})");
-                writer.create_element("skipped").with_attributes(attributes(&[("message", &message)])).write_empty()?;
-            }
-            Standing::Error(why) => {
-                let error = attributes(&[("type", "not run"), ("message", why)]);
-                writer.create_element("error").with_attributes(error).write_empty()?;
-            }
-        }
+        about(writer, test, compared)?;
+        stands(writer, test, compared)?;
         writer.create_element("system-out").write_text_content(BytesText::new(&safe(&sentences(test))))?;
         Ok(())
     })?;
+    Ok(())
+}
+
+/// What is known of a test, as properties.
+fn about(writer: &mut Writer<Vec<u8>>, test: &TestResult, compared: Option<&Compared>) -> std::io::Result<()> {
+    let outcome = test.telling().and_then(|run| run.outcome.as_ref());
+    let told_record = test.about.told.as_ref().map(ToString::to_string).filter(|record| !record.is_empty());
+    let met = outcome.and_then(|outcome| outcome.met);
+    let known = [
+        ("provenance", Some(test.about.provenance.label())),
+        ("report", told_record.as_deref()),
+        ("change", compared.map(|compared| compared.change.name())),
+        ("cause", outcome.and_then(|outcome| outcome.cause).map(|cause| cause.label())),
+        ("preventability", outcome.and_then(|outcome| outcome.bracket()).map(|bracket| bracket.label())),
+        ("situation", met.map(|met| if met { "met" } else { "not met" })),
+    ];
+    let told: Vec<(&str, &str)> = known.into_iter().filter_map(|(name, value)| Some((name, value?))).collect();
+    properties(writer, &told)
+}
+
+/// Where a test stands: nothing of one that passed.
+fn stands(writer: &mut Writer<Vec<u8>>, test: &TestResult, compared: Option<&Compared>) -> std::io::Result<()> {
+    let outcome = test.telling().and_then(|run| run.outcome.as_ref());
+    let kinds = outcome.map_or_else(String::new, |outcome| {
+        let kinds = outcome.kinds();
+        kinds.iter().filter(|kind| kind.is_failure()).map(|kind| kind.label()).collect::<Vec<_>>().join(", ")
+    });
+    match standing(test, compared) {
+        Standing::Passed => {}
+        Standing::Red(how) => {
+            let why = compared.map_or("", |compared| compared.why.as_str());
+            let message = [how, why, &kinds].into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(": ");
+            let failure = attributes(&[("type", how), ("message", &message)]);
+            let failure = writer.create_element("failure").with_attributes(failure);
+            failure.write_text_content(BytesText::new(&safe(&sentences(test))))?;
+        }
+        Standing::Known(how) => {
+            let message = format!("{how} ({kinds})");
+            writer.create_element("skipped").with_attributes(attributes(&[("message", &message)])).write_empty()?;
+        }
+        Standing::Error(why) => {
+            let error = attributes(&[("type", "not run"), ("message", why)]);
+            writer.create_element("error").with_attributes(error).write_empty()?;
+        }
+    }
     Ok(())
 }
 

@@ -10,14 +10,15 @@ mod numbers;
 mod obstacles;
 mod places;
 mod remarks;
+mod starts;
 
 pub use actors::arm_m;
 
 use crate::network::RoadNetwork;
-use crate::scenario::{ActorPlacement, Placement, Scenario, ego_size_m};
+use crate::scenario::{ActorPlacement, ControlPlacement, ObstaclePlacement, Placement, Scenario, ego_size_m};
 use recrash_model::geometry::OrientedBox;
 use recrash_model::rollout::EGO_ID;
-use recrash_model::scenario::ScenarioDraft;
+use recrash_model::scenario::{Obstacle, ScenarioDraft};
 use recrash_model::vehicle::VehicleSpec;
 use recrash_model::{Diagnostic, Outcome};
 use remarks::Remarks;
@@ -38,7 +39,7 @@ pub fn check(draft: ScenarioDraft) -> Result<Outcome<Scenario>, Vec<Diagnostic>>
 pub fn check_on(draft: ScenarioDraft, known: Option<&Arc<RoadNetwork>>) -> Result<Outcome<Scenario>, Vec<Diagnostic>> {
     let mut remarks = Remarks::default();
     let fit = numbers::check(&draft, &mut remarks);
-    let planned = actors::numbers(&draft, &mut remarks);
+    let plans_fit = actors::numbers(&draft, &mut remarks);
     // Geometry needs numbers it can be built from; what does not depend on it has been checked above in any case. And
     // each is compared with each other, so that thousands of them would be compared for hours.
     if !fit.counts || !fit.map || !fit.ego {
@@ -56,85 +57,127 @@ pub fn check_on(draft: ScenarioDraft, known: Option<&Arc<RoadNetwork>>) -> Resul
         }
     };
     let control = control::place(&draft, &network, &mut remarks);
-    let recorded = match &draft.ego.recorded {
-        Some(plan) if planned => {
-            let body = (draft.ego.kind, draft.ego.size, draft.ego.parts.as_slice());
-            actors::placement(&network, &control, body, plan, "ego.recorded", &mut remarks)
-        }
-        _ => None,
+    let mut placing = Placing { draft: &draft, fit, plans_fit, network: &network, control: &control, remarks };
+    let recorded = placing.recorded();
+    let Some(ego) = placing.ego(recorded.as_ref()) else {
+        return Err(placing.remarks.list);
     };
-    let ego = match draft.map.network() {
-        Some(_) => places::ego_on_roads(&draft, &network, recorded.as_ref(), &mut remarks),
-        None => places::ego(&draft, &network, &mut remarks),
-    };
-    let Some(mut ego) = ego else {
-        return Err(remarks.list);
-    };
-    if let Some(recorded) = &recorded {
-        ego.pose = recorded.pose;
-        ego.speed_mps = draft.ego.recorded.as_ref().map_or(0.0, |plan| plan.speed_mps);
-        ego.s_m = ego.path.project(recorded.pose.position, 0).s.clamp(0.0, ego.path.length_m);
-    }
-    if draft.map.network().is_none() {
-        motion::ego(&draft, &network, &ego, &mut remarks);
-    }
-    let mut partners = Vec::with_capacity(draft.partners.len());
-    for (position, partner) in draft.partners.iter().enumerate() {
-        let path = format!("partners[{position}]");
-        motion::script(&draft, partner, &path, &mut remarks);
-        if !fit.partners.get(position).copied().unwrap_or(false) {
-            partners.push(None);
-            continue;
-        }
-        let placed = places::partner(&draft, partner, &path, &network, &ego, &mut remarks);
-        if let Some(placement) = &placed {
-            motion::partner(&draft, partner, &path, &network, placement, &mut remarks);
-        }
-        partners.push(placed);
-    }
-    let placed_obstacles: Vec<_> = draft
-        .obstacles
-        .iter()
-        .zip(&fit.obstacles)
-        .enumerate()
-        .map(
-            |(position, (obstacle, fit))| {
-                if *fit { obstacles::place(obstacle, position, &network, &ego, &mut remarks) } else { None }
-            },
-        )
-        .collect();
-    let mut planned_actors = Vec::with_capacity(draft.actors.len());
-    let mut objects = Vec::with_capacity(draft.objects.len());
-    if planned {
-        let names = actors::Names::of(&draft);
-        if let Some(plan) = &draft.ego.recorded {
-            actors::references(&draft, &names, (EGO_ID, plan), &draft.ego.parts, "ego.recorded", &mut remarks);
-        }
-        for (position, actor) in draft.actors.iter().enumerate() {
-            let path = format!("actors[{position}].plan");
-            actors::references(&draft, &names, (&actor.id, &actor.plan), &actor.parts, &path, &mut remarks);
-            let body = (actor.kind, actor.size, actor.parts.as_slice());
-            let placed = actors::placement(&network, &control, body, &actor.plan, &path, &mut remarks);
-            planned_actors.push(placed.map(|each| ActorPlacement { mass_kg: actor.mass_kg.or(each.mass_kg), ..each }));
-        }
-        for (position, object) in draft.objects.iter().enumerate() {
-            objects.push(obstacles::place_object(object, position, &network, &mut remarks));
-        }
-    }
+    let partners = placing.partners(&ego);
+    let obstacles = placing.obstacles(&ego);
+    let actors = placing.actors();
+    let objects = placing.objects();
+    let mut remarks = placing.remarks;
     if draft.actors.is_empty() && draft.objects.is_empty() && recorded.is_none() {
-        places::overlaps(&draft, &ego, &partners, &placed_obstacles, &mut remarks);
+        places::overlaps(&draft, &ego, &partners, &obstacles, &mut remarks);
     } else {
-        actors::overlaps(&everybody(&draft, &ego, &partners, &planned_actors), &mut remarks);
+        actors::overlaps(&everybody(&draft, &ego, &partners, &actors), &mut remarks);
     }
-    obstacles::way_through(&draft, &placed_obstacles, &mut remarks);
+    obstacles::way_through(&draft, &obstacles, &mut remarks);
     if remarks.list.iter().any(Diagnostic::is_error) {
         return Err(remarks.list);
     }
     let partners = partners.into_iter().flatten().collect();
-    let actors = planned_actors.into_iter().flatten().collect();
-    let obstacles = placed_obstacles.into_iter().chain(objects).flatten().collect();
+    let actors = actors.into_iter().flatten().collect();
+    let obstacles = obstacles.into_iter().chain(objects).flatten().collect();
     let scenario = Scenario { draft, network, ego, partners, obstacles, actors, recorded, control };
     Ok(Outcome { value: scenario, diagnostics: remarks.list })
+}
+
+/// A draft whose map and ego can be built, being placed on its network.
+struct Placing<'a> {
+    draft: &'a ScenarioDraft,
+    fit: numbers::Fit,
+    /// Whether the numbers of everybody with a plan fit.
+    plans_fit: bool,
+    network: &'a RoadNetwork,
+    control: &'a [ControlPlacement],
+    remarks: Remarks,
+}
+
+impl Placing<'_> {
+    /// The recorded driver of the ego, where the draft has one.
+    fn recorded(&mut self) -> Option<ActorPlacement> {
+        let ego = &self.draft.ego;
+        let plan = ego.recorded.as_ref().filter(|_| self.plans_fit)?;
+        let body = (ego.kind, ego.size, ego.parts.as_slice());
+        actors::placement(self.network, self.control, body, plan, "ego.recorded", &mut self.remarks)
+    }
+
+    /// The ego on its way; where a driver was recorded, it starts as that one does.
+    fn ego(&mut self, recorded: Option<&ActorPlacement>) -> Option<Placement> {
+        let (draft, network) = (self.draft, self.network);
+        let on_roads = draft.map.network().is_some();
+        let mut ego = if on_roads {
+            places::ego_on_roads(draft, network, recorded, &mut self.remarks)?
+        } else {
+            places::ego(draft, network, &mut self.remarks)?
+        };
+        if let Some(recorded) = recorded {
+            ego.pose = recorded.pose;
+            ego.speed_mps = draft.ego.recorded.as_ref().map_or(0.0, |plan| plan.speed_mps);
+            ego.s_m = ego.path.project(recorded.pose.position, 0).s.clamp(0.0, ego.path.length_m);
+        }
+        if !on_roads {
+            motion::ego(draft, network, &ego, &mut self.remarks);
+        }
+        Some(ego)
+    }
+
+    /// The partners, each where it fits.
+    fn partners(&mut self, ego: &Placement) -> Vec<Option<Placement>> {
+        let (draft, network, remarks) = (self.draft, self.network, &mut self.remarks);
+        let mut partners = Vec::with_capacity(draft.partners.len());
+        for (position, partner) in draft.partners.iter().enumerate() {
+            let path = format!("partners[{position}]");
+            motion::script(draft, partner, &path, remarks);
+            if !self.fit.partners.get(position).copied().unwrap_or(false) {
+                partners.push(None);
+                continue;
+            }
+            let placed = places::partner(draft, partner, &path, network, ego, remarks);
+            if let Some(placement) = &placed {
+                motion::partner(draft, partner, &path, network, placement, remarks);
+            }
+            partners.push(placed);
+        }
+        partners
+    }
+
+    /// The obstacles beside the ego's way, each where it fits.
+    fn obstacles(&mut self, ego: &Placement) -> Vec<Option<ObstaclePlacement>> {
+        let place = |(position, (obstacle, fit)): (usize, (&Obstacle, &bool))| {
+            if *fit { obstacles::place(obstacle, position, self.network, ego, &mut self.remarks) } else { None }
+        };
+        self.draft.obstacles.iter().zip(&self.fit.obstacles).enumerate().map(place).collect()
+    }
+
+    /// Everybody with a plan, and whether the plans, the recorded one too, name who is there; nobody where their numbers do not fit.
+    fn actors(&mut self) -> Vec<Option<ActorPlacement>> {
+        let mut placed = Vec::with_capacity(self.draft.actors.len());
+        if !self.plans_fit {
+            return placed;
+        }
+        let (draft, remarks) = (self.draft, &mut self.remarks);
+        let names = actors::Names::of(draft);
+        if let Some(plan) = &draft.ego.recorded {
+            actors::references(draft, &names, (EGO_ID, plan), &draft.ego.parts, "ego.recorded", remarks);
+        }
+        for (position, actor) in draft.actors.iter().enumerate() {
+            let path = format!("actors[{position}].plan");
+            actors::references(draft, &names, (&actor.id, &actor.plan), &actor.parts, &path, remarks);
+            let body = (actor.kind, actor.size, actor.parts.as_slice());
+            let own = actors::placement(self.network, self.control, body, &actor.plan, &path, remarks);
+            placed.push(own.map(|each| ActorPlacement { mass_kg: actor.mass_kg.or(each.mass_kg), ..each }));
+        }
+        placed
+    }
+
+    /// The things that lie about; none where the numbers of plans and things do not fit.
+    fn objects(&mut self) -> Vec<Option<ObstaclePlacement>> {
+        let objects = if self.plans_fit { self.draft.objects.as_slice() } else { &[] };
+        let place = |(position, object)| obstacles::place_object(object, position, self.network, &mut self.remarks);
+        objects.iter().enumerate().map(place).collect()
+    }
 }
 
 /// Everybody who is there at the start: name, path and box.

@@ -68,34 +68,12 @@ pub(crate) fn convert(object: &Map<String, Value>, parts: &mut Parts) -> Option<
     let narrative = fields.word(&["narrative", "description"], parts)?.unwrap_or_default();
     let duration_s = fields.number(&["duration_s"], parts)?.unwrap_or(40.0);
 
-    let mut partners = Vec::new();
-    if object.contains_key("direction") {
-        fields.used.extend(PARTNER_FIELDS);
-        partners.push(partner(object, "", 1, lead_turn, parts)?);
-    }
-    for name in PARTNER_LISTS {
-        let Some(items) = fields.list(name, parts)? else { continue };
-        for (position, item) in items.iter().enumerate() {
-            let path = format!("{name}[{position}]");
-            let Value::Object(item) = item else {
-                parts.error("scenario.type", &path, format!("{} is no partner", brief(item)), "write { ... }");
-                return None;
-            };
-            let converted = partner(item, &path, partners.len() + 1, lead_turn, parts)?;
-            partners.push(converted);
-        }
-    }
+    let partners = partners(&mut fields, lead_turn, parts)?;
     let behind = partners.iter().map(|partner| -offset(partner)).fold(0.0, f64::max);
     let ahead = partners.iter().map(offset).fold(0.0, f64::max);
     let ego_s = EGO_START_M + behind.min(200.0);
     let approach_m = (ego_s + MARGIN_M).clamp(60.0, 300.0);
-    let mut obstacles = Vec::new();
-    for name in OBSTACLE_LISTS {
-        let Some(items) = fields.list(name, parts)? else { continue };
-        for (position, item) in items.iter().enumerate() {
-            obstacles.push(obstacle(item, &format!("{name}[{position}]"), ego_s, parts)?);
-        }
-    }
+    let obstacles = obstacles(&mut fields, ego_s, parts)?;
     fields.warn_unused(parts);
     let map = map(&letter, approach_m, (ahead + MARGIN_M).clamp(60.0, 300.0), parts)?;
     note(&map, ego_s, parts);
@@ -120,6 +98,40 @@ pub(crate) fn convert(object: &Map<String, Value>, parts: &mut Parts) -> Option<
         duration_s,
         ..ScenarioDraft::default()
     })
+}
+
+/// The crash partners: the one that stands flat beside the ego's fields, and those of the lists.
+fn partners(fields: &mut Fields<'_>, lead_turn: Turn, parts: &mut Parts) -> Option<Vec<Partner>> {
+    let mut partners = Vec::new();
+    if fields.object.contains_key("direction") {
+        fields.used.extend(PARTNER_FIELDS);
+        partners.push(partner(fields.object, "", 1, lead_turn, parts)?);
+    }
+    for name in PARTNER_LISTS {
+        let Some(items) = fields.list(name, parts)? else { continue };
+        for (position, item) in items.iter().enumerate() {
+            let path = format!("{name}[{position}]");
+            let Value::Object(item) = item else {
+                parts.error("scenario.type", &path, format!("{} is no partner", brief(item)), "write { ... }");
+                return None;
+            };
+            let converted = partner(item, &path, partners.len() + 1, lead_turn, parts)?;
+            partners.push(converted);
+        }
+    }
+    Some(partners)
+}
+
+/// The obstacles of the lists, for an ego that starts here. [m]
+fn obstacles(fields: &mut Fields<'_>, ego_s: f64, parts: &mut Parts) -> Option<Vec<Obstacle>> {
+    let mut obstacles = Vec::new();
+    for name in OBSTACLE_LISTS {
+        let Some(items) = fields.list(name, parts)? else { continue };
+        for (position, item) in items.iter().enumerate() {
+            obstacles.push(obstacle(item, &format!("{name}[{position}]"), ego_s, parts)?);
+        }
+    }
+    Some(obstacles)
 }
 
 fn note(map: &MapSpec, ego_s: f64, parts: &mut Parts) {

@@ -4,7 +4,7 @@ use crate::json_parts::{Parts, policy, tagged};
 use crate::json_place::add_lines;
 use crate::paper_dialect;
 use recrash_model::scenario::{
-    CrossMap, CurveMap, GraphMap, MapSpec, RoundaboutMap, SCENARIO_FORMAT, SCENARIO_FORMAT_1, ScenarioDraft,
+    CrossMap, CurveMap, GraphMap, MapSpec, Partner, RoundaboutMap, SCENARIO_FORMAT, SCENARIO_FORMAT_1, ScenarioDraft,
     StraightMap, TeeMap,
 };
 use recrash_model::{Diagnostic, Location, Outcome, Severity};
@@ -97,7 +97,8 @@ const FIELDS: [(&str, bool); 14] = [
     ("after_contact_s", false),
 ];
 
-fn native(object: &Map<String, Value>, parts: &mut Parts) -> Option<ScenarioDraft> {
+/// Says which fields there are none of, and which are missing.
+fn check_fields(object: &Map<String, Value>, parts: &mut Parts) {
     let known: Vec<&str> = FIELDS.iter().map(|(name, _)| *name).collect();
     for name in object.keys() {
         if !known.contains(&name.as_str()) {
@@ -114,6 +115,11 @@ fn native(object: &Map<String, Value>, parts: &mut Parts) -> Option<ScenarioDraf
             parts.error("scenario.missing-field", name, format!("missing field `{name}`"), hint);
         }
     }
+}
+
+/// A draft in the format of this program.
+fn native(object: &Map<String, Value>, parts: &mut Parts) -> Option<ScenarioDraft> {
+    check_fields(object, parts);
     let format: Option<String> = object.get("format").and_then(|value| parts.read(value, "format"));
     if let Some(format) = &format
         && ![SCENARIO_FORMAT, SCENARIO_FORMAT_1].contains(&format.as_str())
@@ -129,17 +135,7 @@ fn native(object: &Map<String, Value>, parts: &mut Parts) -> Option<ScenarioDraf
     let source = object.get("source").and_then(|value| parts.read(value, "source"));
     let map = object.get("map").and_then(|value| map(value, parts));
     let ego = object.get("ego").and_then(|value| parts.read(value, "ego"));
-    let partners = list(object, "partners", parts, |value, path, parts| {
-        let Value::Object(fields) = value else { return parts.read(value, path) };
-        let mut fields = fields.clone();
-        let written = fields.get("policy").map(|value| policy(value, &format!("{path}.policy"), parts));
-        if let Some(None) = written {
-            // Any policy: so that what else is wrong with this partner is told too.
-            fields.insert("policy".to_owned(), serde_json::json!({"type": "stopped"}));
-        }
-        let partner = parts.read(&Value::Object(fields), path);
-        if matches!(written, Some(None)) { None } else { partner }
-    });
+    let partners = list(object, "partners", parts, partner);
     let obstacles = list(object, "obstacles", parts, |value, path, parts| parts.read(value, path));
     let traffic = optional(object, "traffic", parts);
     let environment = optional(object, "environment", parts);
@@ -161,6 +157,19 @@ fn native(object: &Map<String, Value>, parts: &mut Parts) -> Option<ScenarioDraf
         duration_s: duration_s?,
         after_contact_s: optional(object, "after_contact_s", parts)?,
     })
+}
+
+/// A partner; its policy by hand, because serde forgets the path inside a tagged enum.
+fn partner(value: &Value, path: &str, parts: &mut Parts) -> Option<Partner> {
+    let Value::Object(fields) = value else { return parts.read(value, path) };
+    let mut fields = fields.clone();
+    let written = fields.get("policy").map(|value| policy(value, &format!("{path}.policy"), parts));
+    if let Some(None) = written {
+        // Any policy: so that what else is wrong with this partner is told too.
+        fields.insert("policy".to_owned(), serde_json::json!({"type": "stopped"}));
+    }
+    let partner = parts.read(&Value::Object(fields), path);
+    if matches!(written, Some(None)) { None } else { partner }
 }
 
 fn optional<T: DeserializeOwned + Default>(object: &Map<String, Value>, name: &str, parts: &mut Parts) -> Option<T> {

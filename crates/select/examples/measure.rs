@@ -11,7 +11,7 @@ use recrash_model::profile::SystemProfile;
 use recrash_model::record::RecordSet;
 use recrash_model::selection::Strategy;
 use recrash_records::{SAMPLE_CSV, SAMPLE_NAME, SourceText, ingest};
-use recrash_select::{Embedding, SelectOptions, budget_table, embed_records, select_with, stability};
+use recrash_select::{Embedding, SelectError, SelectOptions, budget_table, embed_records, select_with, stability};
 use std::time::Instant;
 
 const SEEDS: usize = 50;
@@ -36,13 +36,24 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         started.elapsed()
     );
 
+    strategies(&records, &profile, &embedding)?;
+    one_selection(&records, &profile, &embedding)?;
+    budgets(&records, &profile, &embedding)?;
+    if let Some(path) = arguments.get(1) {
+        std::fs::write(path, dump(&records, &profile, &embedding)?.to_string())?;
+    }
+    Ok(())
+}
+
+/// How well each strategy covers, and how much its picks depend on the seed.
+fn strategies(records: &RecordSet, profile: &SystemProfile, embedding: &Embedding) -> Result<(), SelectError> {
     println!(
         "| strategy | templates covered (seeds) | radius | mean | narrative radius | narrative mean | same picks | same clusters |"
     );
     println!("|---|---|---|---|---|---|---|---|");
     for strategy in Strategy::ALL {
         let options = SelectOptions { strategy, ..SelectOptions::default() };
-        let s = stability(&records, &profile, &options, &embedding, SEEDS)?;
+        let s = stability(records, profile, &options, embedding, SEEDS)?;
         println!(
             "| {} | {:?} | {:.3} | {:.3} | {:.3} | {:.3} | {:.2} | {:.2} |",
             strategy.name(),
@@ -55,10 +66,13 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             s.cluster_agreement
         );
     }
+    Ok(())
+}
 
+/// What one selection covers, cluster by cluster.
+fn one_selection(records: &RecordSet, profile: &SystemProfile, embedding: &Embedding) -> Result<(), SelectError> {
     let started = Instant::now();
-    let options = SelectOptions::default();
-    let selection = select_with(&records, &profile, &options, &embedding)?.value;
+    let selection = select_with(records, profile, &SelectOptions::default(), embedding)?.value;
     println!("\none selection in {:?}, variance kept {:.3}", started.elapsed(), selection.embedding.explained_variance);
     println!(
         "pairs {} covered / {} observed / {} possible",
@@ -67,27 +81,24 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     for cluster in &selection.clusters {
         println!("{:40} {:>3} records, radius {:.3}", cluster.scenario_id, cluster.members.len(), cluster.radius);
     }
+    Ok(())
+}
+
+/// What larger budgets give.
+fn budgets(records: &RecordSet, profile: &SystemProfile, embedding: &Embedding) -> Result<(), SelectError> {
     println!("\n| budget | inertia | silhouette | templates | radius | mean |\n|---|---|---|---|---|---|");
-    for row in budget_table(&records, &profile, &options, &embedding, &[5, 10, 14, 20, 30, 40, 60])? {
+    for row in budget_table(records, profile, &SelectOptions::default(), embedding, &[5, 10, 14, 20, 30, 40, 60])? {
         let silhouette = row.silhouette.map_or("-".to_owned(), |s| format!("{s:.3}"));
         println!(
             "| {} | {:.2} | {silhouette} | {} | {:.3} | {:.3} |",
             row.budget, row.inertia, row.templates_covered, row.radius, row.mean_distance
         );
     }
-
-    if let Some(path) = arguments.get(1) {
-        std::fs::write(path, dump(&records, &profile, &embedding)?.to_string())?;
-    }
     Ok(())
 }
 
 /// What scikit-learn needs to do the same, and what k-means gave here for 20 seeds.
-fn dump(
-    records: &RecordSet,
-    profile: &SystemProfile,
-    embedding: &Embedding,
-) -> Result<serde_json::Value, recrash_select::SelectError> {
+fn dump(records: &RecordSet, profile: &SystemProfile, embedding: &Embedding) -> Result<serde_json::Value, SelectError> {
     let options = SelectOptions { strategy: Strategy::Kmeans, ..SelectOptions::default() };
     let mut inertia = Vec::new();
     let mut labels: Vec<Vec<usize>> = Vec::new();

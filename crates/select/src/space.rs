@@ -55,27 +55,7 @@ impl ClusteringSpace {
         if embedding.rows() != records.usable.len() {
             return Err(SelectError::EmbeddingRows { expected: records.usable.len(), found: embedding.rows() });
         }
-        let order: BTreeMap<Template, usize> = profile.templates().into_iter().zip(0..).collect();
-        let mut diagnostics = Vec::new();
-        let mut positions = Vec::new();
-        let mut embedding_rows = Vec::new();
-        let mut by_template: BTreeMap<usize, ObservedTemplate> = BTreeMap::new();
-        for (entry, &position) in records.usable.iter().enumerate() {
-            let record = &records.records[position];
-            let Some((template, &place)) = record.template().and_then(|t| Some((t, order.get(&t)?))) else {
-                diagnostics.push(not_expressible(record, profile));
-                continue;
-            };
-            let new = ObservedTemplate { template, rows: Vec::new(), weight: 0.0 };
-            by_template.entry(place).or_insert(new).rows.push(positions.len());
-            positions.push(position);
-            embedding_rows.push(entry);
-        }
-        if positions.is_empty() {
-            return Err(SelectError::NoUsableRecords);
-        }
-        let mut observed: Vec<ObservedTemplate> = by_template.into_values().collect();
-        observed.sort_by_key(|template| std::cmp::Reverse(template.rows.len()));
+        let Placed { positions, embedding_rows, mut observed, diagnostics } = place(records, profile)?;
         let mut template_of = vec![0; positions.len()];
         let mut weights = vec![1.0; positions.len()];
         for (index, template) in observed.iter_mut().enumerate() {
@@ -106,6 +86,43 @@ impl ClusteringSpace {
         let told = positions.iter().map(|position| !records.untold.contains_key(position)).collect();
         Ok(Self { positions, template_of, observed, weights, told, narrative: pca.scores, points, info, diagnostics })
     }
+}
+
+/// The records that the profile has a template for, and the templates they have, the most frequent first.
+struct Placed {
+    /// Positions in the list of records.
+    positions: Vec<usize>,
+    /// Their rows in the embedding.
+    embedding_rows: Vec<usize>,
+    observed: Vec<ObservedTemplate>,
+    /// Remarks on the others.
+    diagnostics: Vec<Diagnostic>,
+}
+
+/// Puts every usable record with its template.
+fn place(records: &RecordSet, profile: &SystemProfile) -> Result<Placed, SelectError> {
+    let order: BTreeMap<Template, usize> = profile.templates().into_iter().zip(0..).collect();
+    let mut diagnostics = Vec::new();
+    let mut positions = Vec::new();
+    let mut embedding_rows = Vec::new();
+    let mut by_template: BTreeMap<usize, ObservedTemplate> = BTreeMap::new();
+    for (entry, &position) in records.usable.iter().enumerate() {
+        let record = &records.records[position];
+        let Some((template, &place)) = record.template().and_then(|t| Some((t, order.get(&t)?))) else {
+            diagnostics.push(not_expressible(record, profile));
+            continue;
+        };
+        let new = ObservedTemplate { template, rows: Vec::new(), weight: 0.0 };
+        by_template.entry(place).or_insert(new).rows.push(positions.len());
+        positions.push(position);
+        embedding_rows.push(entry);
+    }
+    if positions.is_empty() {
+        return Err(SelectError::NoUsableRecords);
+    }
+    let mut observed: Vec<ObservedTemplate> = by_template.into_values().collect();
+    observed.sort_by_key(|template| std::cmp::Reverse(template.rows.len()));
+    Ok(Placed { positions, embedding_rows, observed, diagnostics })
 }
 
 /// How much a record counts under [`Weighting::Severity`]: doubled for each step of harm; unknown severity counts as

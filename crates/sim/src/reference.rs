@@ -11,7 +11,7 @@ use crate::chassis::Controls;
 use crate::emergency::EmergencyResponse;
 use crate::give_way::GiveWay;
 use crate::idm::{IdmParameters, curve_limit};
-use crate::scene::Scene;
+use crate::scene::{Scene, Seen};
 use crate::steering::LaneKeeper;
 use crate::swerve::Swerve;
 use recrash_model::geometry::Vec2;
@@ -133,6 +133,16 @@ impl Encounter {
     fn with_room_to_pull_out(self) -> Self {
         Self { gap_m: (self.gap_m - PULL_OUT_M).max(0.1), ..self }
     }
+}
+
+/// What somebody else, and the line before his way, ask for.
+struct Demand {
+    /// The acceleration in comfort. [m/s^2]
+    asked_mps2: f64,
+    /// The deceleration without which the two touch. [m/s^2]
+    required_mps2: f64,
+    /// Whether it is an emergency.
+    danger: bool,
 }
 
 /// On which end of it somebody beside it is.
@@ -263,50 +273,65 @@ impl Reference {
             (true, _) => mind.noticed.saturating_add(1),
             (false, _) => mind.noticed.min(known).saturating_sub(1),
         };
+        let mut demand = self.demand(scene, seen, actor, encounter.as_ref(), line, mind);
+        if mind.danger > 0 && entering(scene, me, other, crossings) {
+            // An emergency stop is carried through, even where its front is on the crossing already.
+            demand.required_mps2 = demand.required_mps2.max(self.comfortable_mps2);
+        }
+        let goes_on = mind.danger > 0 && demand.required_mps2 > RELAXED_MPS2;
+        mind.danger = match (demand.danger || goes_on, scene.step) {
+            (true, 0) => known,
+            (true, _) => mind.danger.saturating_add(1),
+            (false, _) => 0,
+        };
+        self.respond(&demand, mind)
+    }
 
+    /// What somebody ahead asks for, and a line to stop at before his way.
+    fn demand(
+        &self,
+        scene: &Scene<'_>,
+        seen: &Seen,
+        actor: &Seen,
+        ahead: Option<&Encounter>,
+        line: Option<(&Crossing, f64)>,
+        mind: &Attention,
+    ) -> Demand {
         let braking_mps2 = if scene.step > 0 { (mind.speed_mps - actor.speed) / STEP_S } else { 0.0 };
-        let mut asked = f64::INFINITY;
-        let mut danger = false;
-        let mut required: f64 = 0.0;
-        if let Some(ahead) = &encounter {
+        let mut demand = Demand { asked_mps2: f64::INFINITY, required_mps2: 0.0, danger: false };
+        if let Some(ahead) = ahead {
             let ttc = if ahead.closing_mps > 0.0 { ahead.gap_m / ahead.closing_mps } else { f64::INFINITY };
             let brakes_hard = braking_mps2 > DANGEROUS_BRAKING_MPS2 && ahead.gap_m < TIME_HEADWAY_S * seen.speed;
-            danger |= ttc < DANGEROUS_TTC_S || ahead.required_mps2() > self.comfortable_mps2 || brakes_hard;
-            required = required.max(ahead.required_mps2());
+            demand.danger |= ttc < DANGEROUS_TTC_S || ahead.required_mps2() > self.comfortable_mps2 || brakes_hard;
+            demand.required_mps2 = demand.required_mps2.max(ahead.required_mps2());
             let ahead = if mind.standing >= PARKED_STEPS { &ahead.with_room_to_pull_out() } else { ahead };
-            asked = asked.min(self.comfortable(seen.speed, ahead));
+            demand.asked_mps2 = demand.asked_mps2.min(self.comfortable(seen.speed, ahead));
         }
         if let Some((crossing, distance)) = line {
             // It stops its usual room in front of the line; past that it still may stop at the line.
             let stop = Encounter { gap_m: distance.max(0.1), lead_mps: 0.0, closing_mps: seen.speed };
             let hard = stop.required_mps2();
-            danger |= hard > self.comfortable_mps2 && collision_course(scene, crossing, braking_mps2);
-            required = required.max(hard);
-            asked = asked.min(self.comfortable(seen.speed, &stop));
+            demand.danger |= hard > self.comfortable_mps2 && collision_course(scene, crossing, braking_mps2);
+            demand.required_mps2 = demand.required_mps2.max(hard);
+            demand.asked_mps2 = demand.asked_mps2.min(self.comfortable(seen.speed, &stop));
         }
+        demand
+    }
 
-        if mind.danger > 0 && entering(scene, me, other, crossings) {
-            // An emergency stop is carried through, even where its front is on the crossing already.
-            required = required.max(self.comfortable_mps2);
-        }
-
-        let goes_on = mind.danger > 0 && required > RELAXED_MPS2;
-        mind.danger = match (danger || goes_on, scene.step) {
-            (true, 0) => known,
-            (true, _) => mind.danger.saturating_add(1),
-            (false, _) => 0,
-        };
+    /// The acceleration that follows a demand, as long as it has been noticed, or has been a danger. [m/s^2]
+    fn respond(&self, demand: &Demand, mind: &Attention) -> f64 {
         // The foot is on the brake from the onset on, and comes down at the same rate as in an emergency.
         let noticed_s = (f64::from(mind.noticed) - 0.5) * STEP_S;
         let foot = self.response.deceleration(noticed_s);
-        let mut acceleration = if noticed_s > self.response.onset_s() { asked.max(-foot) } else { f64::INFINITY };
+        let mut acceleration =
+            if noticed_s > self.response.onset_s() { demand.asked_mps2.max(-foot) } else { f64::INFINITY };
         if mind.danger > 0 {
             // The deceleration in the middle of the step for which it is held.
             let since_s = (f64::from(mind.danger) - 0.5) * STEP_S;
             if since_s > self.response.evaluation_s {
                 acceleration = acceleration.min(0.0);
             }
-            if required > RELAXED_MPS2 {
+            if demand.required_mps2 > RELAXED_MPS2 {
                 acceleration = acceleration.min(-self.response.deceleration(since_s));
             }
         }

@@ -230,7 +230,25 @@ pub(crate) fn prepare(setting: &mut Setting, state: &mut State, scenario: &Scena
         setting.obstacles.push(SeenObstacle { outline, lane, s });
     }
 
-    let target_mps = draft.ego.target_speed_mps;
+    enter_ego(setting, state, scenario, seat);
+    enter_partners(setting, state, scenario);
+    enter_actors(setting, state, scenario);
+    let spawns = recrash_roads::background_traffic(scenario);
+    enter_traffic(setting, state, surface, &spawns);
+    setting.find_crossings(scenario, seat, &spawns);
+    plan(setting, state, scenario, seat);
+
+    let (actors, obstacles) = (state.bodies.len(), setting.obstacles.len());
+    state.attention.resize(actors, Attention::default());
+    state.touched.resize(actors * (actors + obstacles), false);
+    state.controls.resize(actors, Controls::default());
+    state.states.resize(setting.cast.len(), ActorState::default());
+}
+
+/// The ego, with whoever sits in its seat.
+fn enter_ego(setting: &mut Setting, state: &mut State, scenario: &Scenario, seat: Seat) {
+    let draft = scenario.draft();
+    let (target_mps, surface) = (draft.ego.target_speed_mps, draft.environment.surface);
     let spec = VehicleSpec::of(scenario.ego().kind);
     let driver = match seat {
         Seat::Outside => Driver::Outside,
@@ -244,14 +262,23 @@ pub(crate) fn prepare(setting: &mut Setting, state: &mut State, scenario: &Scena
     enter(setting, state, surface, Entrance::of(Role::Ego, scenario.ego(), driver));
     setting.resize_last(scenario.ego_size_m());
     state.resize_last(scenario.ego_size_m());
+}
 
+/// The partners, each with its policy.
+fn enter_partners(setting: &mut Setting, state: &mut State, scenario: &Scenario) {
+    let draft = scenario.draft();
+    let surface = draft.environment.surface;
     for (number, (partner, placement)) in draft.partners.iter().zip(scenario.partners()).enumerate() {
         let plan = Plan::new(partner.kind, &partner.policy, placement.t_m, surface);
         setting.ways.push(Way::new(scenario, number, &plan));
         let driver = Driver::Script(Script::new(plan, number));
         enter(setting, state, surface, Entrance::of(Role::Partner, placement, driver));
     }
+}
 
+/// Everybody with a plan; [`plan`] says where each goes.
+fn enter_actors(setting: &mut Setting, state: &mut State, scenario: &Scenario) {
+    let surface = scenario.draft().environment.surface;
     for placement in scenario.actors() {
         let entrance = Entrance {
             role: Role::Partner,
@@ -270,26 +297,16 @@ pub(crate) fn prepare(setting: &mut Setting, state: &mut State, scenario: &Scena
             *mass_kg = placement.mass_kg.unwrap_or(FIRM_KG);
         }
     }
+}
 
-    let spawns = recrash_roads::background_traffic(scenario);
-    for spawn in &spawns {
+/// Background traffic, which drives as MetaDrive's does.
+fn enter_traffic(setting: &mut Setting, state: &mut State, surface: Surface, spawns: &[TrafficPlacement]) {
+    for spawn in spawns {
         let driver = Driver::MetadriveIdm(MetadriveIdm::new(TRAFFIC_SPEED_MPS, spawn.overtake_timer_steps));
         let TrafficPlacement { kind, ref path, pose, .. } = *spawn;
-        enter(
-            setting,
-            state,
-            surface,
-            Entrance { role: Role::Traffic, kind, path, s_m: 0.0, pose, speed_mps: 0.0, driver },
-        );
+        let entrance = Entrance { role: Role::Traffic, kind, path, s_m: 0.0, pose, speed_mps: 0.0, driver };
+        enter(setting, state, surface, entrance);
     }
-    setting.find_crossings(scenario, seat, &spawns);
-    plan(setting, state, scenario, seat);
-
-    let (actors, obstacles) = (state.bodies.len(), setting.obstacles.len());
-    state.attention.resize(actors, Attention::default());
-    state.touched.resize(actors * (actors + obstacles), false);
-    state.controls.resize(actors, Controls::default());
-    state.states.resize(setting.cast.len(), ActorState::default());
 }
 
 /// An actor that is about to enter.

@@ -203,56 +203,28 @@ fn partner_plan(task: &Task, policy: &Policy, start_t_m: f64) -> Plan {
     Plan::new(task.kind, policy, start_t_m, Surface::Dry)
 }
 
+/// How a partner comes over that drives beside the ego.
+struct MoveOver {
+    /// When the two meet. [s]
+    meets_s: f64,
+    /// Where on its way the partner is then. [m]
+    place_m: f64,
+    /// Its speed, at which it keeps beside the ego. [m/s]
+    partner_mps: f64,
+    /// Its start to the right of its lane's centre. [m]
+    start_t_m: f64,
+    lateral: LateralMove,
+}
+
 /// Parallel paths: the partner drives beside the ego and comes over; looks for its place beside the ego.
 fn time_sideways(task: &Task, course: &Course, plan: &Attempt) -> Option<Timing> {
-    let spec = VehicleSpec::of(task.kind);
-    let ego_spec = VehicleSpec::of(PartnerKind::PassengerCar);
-    let lane_m = course.network.map.carriageway().lane_width_m;
-    let clearance_m = lane_m - 0.5 * ego_spec.width_m - 0.5 * spec.width_m;
-    let on_road = task.ground == Ground::Road;
-    let turns = task.template.cp != Movement::Straight;
-    // Where they meet: late in the movement that must show; in a circle past the second exit, still on the ring.
-    let place = |way: &Way| match way.last_part {
-        Some((exit_m, _)) if task.ground == Ground::Circle => way.block_m + 0.75 * (exit_m - way.block_m),
-        Some((from, to)) if turns => from + 0.85 * (to - from),
-        Some((from, to)) => from + 0.5 * (to - from),
-        None => task.ego_start_m + 5.5 * task.ego_mps,
-    };
-    let (ego_place, partner_place) = (place(&course.ego), place(&course.partner));
-    let meets_s = (ego_place - task.ego_start_m) / task.ego_mps;
-    // The partner keeps beside the ego on the inside or outside of the curve.
-    let block = course.ego.block_m;
-    let ratio = if ego_place > block && !on_road { (partner_place - block) / (ego_place - block) } else { 1.0 };
-    let partner_mps = (task.ego_mps * ratio * 100.0).round() / 100.0;
-    // On a road without junction a move of half a lane counts as a turn to that side. A partner whose move must show
-    // starts on the far side of its lane, so that it has moved so far before the two can touch, and comes over slowly,
-    // so that its corner does not lead by much.
-    let far_m = (SHIFT_SHOWS_LANES * lane_m - clearance_m + 0.06 * spec.length_m).clamp(0.3, 1.2);
     let touch = plan.aim == Aim::Touch;
-    let (from_t, to_t, move_s) = match (on_road, turns) {
-        (true, false) if touch => (0.0, 0.8 * lane_m, 2.5),
-        (true, false) => (0.0, lane_m, 3.0),
-        (true, true) => (-far_m, lane_m, 4.5),
-        // Who goes straight through a junction comes over slowly: a heading that differs by more than a few degrees
-        // would be a turn begun.
-        (false, false) if touch => (0.0, clearance_m + 0.6, (clearance_m / (0.1 * task.ego_mps)).clamp(2.0, 6.0)),
-        (false, true) if touch => (0.0, clearance_m + 0.6, 2.0),
-        (false, _) => (0.0, 0.4 * clearance_m, 2.0),
-    };
-    let move_s = (move_s * 10.0).round() / 10.0;
-    let ahead_of_meeting_s = if on_road { move_s } else { 0.7 * move_s };
-    let tenths = |value: f64| (value * 10.0).round() / 10.0;
-    let lateral = LateralMove {
-        start_s: tenths((meets_s - ahead_of_meeting_s).max(0.5)),
-        duration_s: move_s,
-        to_t_m: (to_t * task.towards * 20.0).round() / 20.0,
-    };
-    let start_t_m = tenths(from_t * task.towards);
+    let MoveOver { meets_s, place_m, partner_mps, start_t_m, lateral } = move_over(task, course, touch);
     let until_s = meets_s + 8.0;
     let ego = Motion::ego(&course.ego.path, task.ego_start_m, task.ego_mps, until_s);
     let does = partner_plan(task, &holds_speed(partner_mps), start_t_m);
     let motion = |shift_m: f64| {
-        let start_m = partner_place + shift_m - partner_mps * meets_s;
+        let start_m = place_m + shift_m - partner_mps * meets_s;
         Motion::partner(&course.partner.path, does, vec![lateral], start_m, partner_mps, until_s)
     };
     let rehearsal = Rehearsal::new(&ego, lateral.start_s - 1.0, until_s);
@@ -271,9 +243,70 @@ fn time_sideways(task: &Task, course: &Course, plan: &Attempt) -> Option<Timing>
     let start = tenths(start);
     let partner_start_m = task.ego_start_m + start;
     // Who does not touch notices, and goes back; unless the move is its movement.
-    let is_its_movement = on_road && turns;
+    let is_its_movement = task.ground == Ground::Road && task.template.cp != Movement::Straight;
     let returns = !touch && !is_its_movement;
     Some(Timing { start, start_t_m, partner_mps, lateral: Some(lateral), returns, partner_start_m, score })
+}
+
+/// Where and when the two meet beside each other, and the partner's move there.
+fn move_over(task: &Task, course: &Course, touch: bool) -> MoveOver {
+    let on_road = task.ground == Ground::Road;
+    let (ego_m, place_m) = (meeting_place(task, &course.ego), meeting_place(task, &course.partner));
+    let meets_s = (ego_m - task.ego_start_m) / task.ego_mps;
+    // The partner keeps beside the ego on the inside or outside of the curve.
+    let block = course.ego.block_m;
+    let ratio = if ego_m > block && !on_road { (place_m - block) / (ego_m - block) } else { 1.0 };
+    let (from_t, to_t, move_s) = sideways(task, course.network.map.carriageway().lane_width_m, touch);
+    let ahead_of_meeting_s = if on_road { move_s } else { 0.7 * move_s };
+    MoveOver {
+        meets_s,
+        place_m,
+        partner_mps: (task.ego_mps * ratio * 100.0).round() / 100.0,
+        start_t_m: tenths(from_t * task.towards),
+        lateral: LateralMove {
+            start_s: tenths((meets_s - ahead_of_meeting_s).max(0.5)),
+            duration_s: move_s,
+            to_t_m: (to_t * task.towards * 20.0).round() / 20.0,
+        },
+    }
+}
+
+/// Where on a way the two meet: late in the movement that must show; in a circle past the second exit, still on the ring. [m]
+fn meeting_place(task: &Task, way: &Way) -> f64 {
+    match way.last_part {
+        Some((exit_m, _)) if task.ground == Ground::Circle => way.block_m + 0.75 * (exit_m - way.block_m),
+        Some((from, to)) if task.template.cp != Movement::Straight => from + 0.85 * (to - from),
+        Some((from, to)) => from + 0.5 * (to - from),
+        None => task.ego_start_m + 5.5 * task.ego_mps,
+    }
+}
+
+/// From where to where the partner moves towards the ego's side, and for how long. [m], [m], [s]
+///
+/// On a road without junction a move of half a lane counts as a turn to that side. A partner whose move must show starts on
+/// the far side of its lane, so that it has moved so far before the two can touch, and comes over slowly, so that its corner
+/// does not lead by much.
+fn sideways(task: &Task, lane_m: f64, touch: bool) -> (f64, f64, f64) {
+    let spec = VehicleSpec::of(task.kind);
+    let ego_spec = VehicleSpec::of(PartnerKind::PassengerCar);
+    let clearance_m = lane_m - 0.5 * ego_spec.width_m - 0.5 * spec.width_m;
+    let far_m = (SHIFT_SHOWS_LANES * lane_m - clearance_m + 0.06 * spec.length_m).clamp(0.3, 1.2);
+    let turns = task.template.cp != Movement::Straight;
+    let (from_t, to_t, move_s) = match (task.ground == Ground::Road, turns) {
+        (true, false) if touch => (0.0, 0.8 * lane_m, 2.5),
+        (true, false) => (0.0, lane_m, 3.0),
+        (true, true) => (-far_m, lane_m, 4.5),
+        // Who goes straight through a junction comes over slowly: a heading that differs by more than a few degrees
+        // would be a turn begun.
+        (false, false) if touch => (0.0, clearance_m + 0.6, (clearance_m / (0.1 * task.ego_mps)).clamp(2.0, 6.0)),
+        (false, true) if touch => (0.0, clearance_m + 0.6, 2.0),
+        (false, _) => (0.0, 0.4 * clearance_m, 2.0),
+    };
+    (from_t, to_t, tenths(move_s))
+}
+
+fn tenths(value: f64) -> f64 {
+    (value * 10.0).round() / 10.0
 }
 
 /// The start with the lowest score, and that score. Scores are smoothed over their neighbours, so that the middle of a

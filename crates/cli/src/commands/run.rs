@@ -10,7 +10,9 @@ use crate::screen::{bold, eprintln, one_line, println, yellow};
 use crate::table::{Cell, number, table};
 use recrash_model::metrics::{Answer, CheckKind};
 use recrash_model::narrative::Origin;
-use recrash_pipeline::{ModelSummary, PipelineError, RunSummary, Stage, Suite, Summary, check_choices, run_stage};
+use recrash_pipeline::{
+    CaseSummary, ModelSummary, PipelineError, RunSummary, Stage, Suite, Summary, check_choices, run_stage,
+};
 use std::path::Path;
 
 /// Runs every stage.
@@ -130,10 +132,25 @@ fn show(summary: &Summary, dir: &Path) {
     funnel(&summary.funnel);
     tables(&summary.tables);
     coverage(&summary.coverage, &summary.templates);
+    scenarios(&summary.cases);
+    for case in &summary.cases {
+        doubts(case);
+    }
+    let doubted = |run: &RunSummary| run.unfaithful.iter().any(|why| why.starts_with(CheckKind::Order.label()));
+    if summary.cases.iter().filter_map(|case| case.tuned.as_ref()).any(doubted) {
+        println!("  order: {}", CheckKind::Order.doubt().unwrap_or_default());
+    }
+    models(&summary.models);
+    result(summary);
+    ending(summary, dir);
+}
+
+/// The scenarios in a table.
+fn scenarios(cases: &[CaseSummary]) {
     title("Scenarios (least box gap to the partner, as designed and as tuned)");
     let mut rows = table(&["scenario", "from", "designed", "tuned", "verdict", "failure", "findings"])
         .without_first(&["findings", "from", "designed", "failure", "tuned"]);
-    for case in &summary.cases {
+    for case in cases {
         let verdict = match (case.faithful(), &case.tuned) {
             (Some(Answer::Yes), _) => "faithful",
             (Some(Answer::Unchecked), _) => "not all checked",
@@ -152,28 +169,29 @@ fn show(summary: &Summary, dir: &Path) {
         ]);
     }
     println!("{rows}");
-    for case in &summary.cases {
-        if let Some(failure) = &case.failure {
-            println!("  {} {}: {failure}", yellow("not run:"), case.id);
-        } else if let Some(run) = case.tuned.as_ref() {
-            match run.faithful {
-                None | Some(Answer::Yes) => {}
-                Some(Answer::No) => {
-                    println!("  {} {}: {}", yellow("not faithful:"), case.id, run.unfaithful.join("; "));
-                }
-                Some(Answer::Unchecked) => {
-                    let why =
-                        if run.unchecked.is_empty() { "nothing is told".into() } else { run.unchecked.join(", ") };
-                    println!("  {} {}: {why}", yellow("not all checked:"), case.id);
-                }
-            }
+}
+
+/// Why a scenario was not run, or what of it does not show what is told.
+fn doubts(case: &CaseSummary) {
+    if let Some(failure) = &case.failure {
+        println!("  {} {}: {failure}", yellow("not run:"), case.id);
+        return;
+    }
+    let Some(run) = case.tuned.as_ref() else { return };
+    match run.faithful {
+        None | Some(Answer::Yes) => {}
+        Some(Answer::No) => {
+            println!("  {} {}: {}", yellow("not faithful:"), case.id, run.unfaithful.join("; "));
+        }
+        Some(Answer::Unchecked) => {
+            let why = if run.unchecked.is_empty() { "nothing is told".into() } else { run.unchecked.join(", ") };
+            println!("  {} {}: {why}", yellow("not all checked:"), case.id);
         }
     }
-    let doubted = |run: &RunSummary| run.unfaithful.iter().any(|why| why.starts_with(CheckKind::Order.label()));
-    if summary.cases.iter().filter_map(|case| case.tuned.as_ref()).any(doubted) {
-        println!("  order: {}", CheckKind::Order.doubt().unwrap_or_default());
-    }
-    models(&summary.models);
+}
+
+/// How many were run, failed, and show what is told.
+fn result(summary: &Summary) {
     let (total, run) = (summary.cases.len(), summary.run());
     let of_total = if run < total { format!(" of {total}") } else { String::new() };
     let (first, tuned) = summary.failed();
@@ -190,7 +208,6 @@ fn show(summary: &Summary, dir: &Path) {
             "  of the {count} of {name}: {yes} show every fact told, {no} do not, {unchecked} could not all be checked"
         );
     }
-    ending(summary, dir);
 }
 
 /// What every run says last.

@@ -196,31 +196,64 @@ impl<'a> Graph<'a> {
     fn road(&mut self, position: usize) {
         let (spec, line) = (&self.map.roads[position], &self.network.lines[position]);
         let [first, last] = self.given_up_m[position];
-        let length_m = line.length_m - first - last;
-        let neighbour = |begins: bool| match self.junction_at.get(&(position, begins)) {
+        let road = DriveRoad {
+            id: id_at(position),
+            name: spec.id.clone(),
+            forward: self.first_road(position),
+            backward: None,
+            junction: None,
+            line: line.part(first, line.length_m - last),
+            length_m: line.length_m - first - last,
+            lane_offset_m: None,
+            predecessor: self.neighbour((position, true)),
+            successor: self.neighbour((position, false)),
+            left: self.drive_lanes(position, &spec.left, 1),
+            right: self.drive_lanes(position, &spec.right, -1),
+            middle: middle(spec),
+            speed_limit_mps: spec.speed_limit_mps,
+            nodes: None,
+            objects: Vec::new(),
+            signals: Vec::new(),
+        };
+        self.roads.push(road);
+        self.lay_lanes(position);
+    }
+
+    /// What a road meets at one of its ends.
+    fn neighbour(&self, end: End) -> Option<Neighbour> {
+        match self.junction_at.get(&end) {
             Some(id) => Some(Neighbour::Junction(*id)),
             None => self
                 .neighbours
-                .get(&(position, begins))
+                .get(&end)
                 .map(|((other, at_start), _)| Neighbour::Road { id: id_at(*other), at_start: *at_start }),
-        };
-        let lanes = |strips: &[Strip], side: i32| -> Vec<DriveLane> {
-            (0..strips.len())
-                .map(|index| {
-                    let number = side * lane_number(index);
-                    let linked = |begins: bool| self.neighbours.get(&(position, begins))?.1.get(&number).copied();
-                    DriveLane {
-                        number,
-                        kind: lane_type(strips[index].kind),
-                        widths: widths(&strips[index], line.length_m, first, length_m),
-                        predecessor: linked(true),
-                        successor: linked(false),
-                        mark: mark(strips[index].kind, strips.get(index + 1).map(|strip| strip.kind)),
-                    }
-                })
-                .collect()
-        };
-        let (left, right) = (lanes(&spec.left, 1), lanes(&spec.right, -1));
+        }
+    }
+
+    /// The lanes on one side of a road, from the middle outwards.
+    fn drive_lanes(&self, position: usize, strips: &[Strip], side: i32) -> Vec<DriveLane> {
+        let whole_m = self.network.lines[position].length_m;
+        let [first, last] = self.given_up_m[position];
+        (0..strips.len())
+            .map(|index| {
+                let number = side * lane_number(index);
+                let linked = |begins: bool| self.neighbours.get(&(position, begins))?.1.get(&number).copied();
+                DriveLane {
+                    number,
+                    kind: lane_type(strips[index].kind),
+                    widths: widths(&strips[index], whole_m, first, whole_m - first - last),
+                    predecessor: linked(true),
+                    successor: linked(false),
+                    mark: mark(strips[index].kind, strips.get(index + 1).map(|strip| strip.kind)),
+                }
+            })
+            .collect()
+    }
+
+    /// Where on a road the lanes of the network lie that belong to it.
+    fn lay_lanes(&mut self, position: usize) {
+        let line = &self.network.lines[position];
+        let [first, _] = self.given_up_m[position];
         for (named, road) in self.named.iter().zip(&self.network.named).filter(|(named, _)| named.road == position) {
             for piece in &road.pieces {
                 for (lane, number) in self.network.road(*piece).lanes.iter().zip(&named.numbers) {
@@ -236,25 +269,6 @@ impl<'a> Graph<'a> {
                 }
             }
         }
-        self.roads.push(DriveRoad {
-            id: id_at(position),
-            name: spec.id.clone(),
-            forward: self.first_road(position),
-            backward: None,
-            junction: None,
-            line: line.part(first, line.length_m - last),
-            length_m,
-            lane_offset_m: None,
-            predecessor: neighbour(true),
-            successor: neighbour(false),
-            left,
-            right,
-            middle: middle(spec),
-            speed_limit_mps: spec.speed_limit_mps,
-            nodes: None,
-            objects: Vec::new(),
-            signals: Vec::new(),
-        });
     }
 
     /// The first road of the network that belongs to a road of the map.

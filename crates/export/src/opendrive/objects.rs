@@ -105,6 +105,47 @@ fn object(
     if kind == "parkingSpace" { element.child(Element::new("parkingSpace").with("access", "all")) } else { element }
 }
 
+/// A signal or sign beside a road, and the lanes it is for.
+fn signal(device: &Control, own: &Named, id: u32, (s, t): (f64, f64)) -> Element {
+    let (name, [kind, subtype, country], above, dynamic) = match device.device {
+        Device::Signal { .. } => ("signal", ["1000001", "-1", "OpenDRIVE"], SIGNAL_M, "yes"),
+        Device::StopSign {} => ("stop sign", ["R1-1", "-1", "US"], SIGN_M, "no"),
+        Device::YieldSign {} => ("yield sign", ["R1-2", "-1", "US"], SIGN_M, "no"),
+    };
+    let element = Element::new("signal")
+        .with_number("s", rounded(s))
+        .with_number("t", rounded(t))
+        .with("id", id.to_string())
+        .with("name", name)
+        .with("dynamic", dynamic)
+        .with("orientation", if own.against { "-" } else { "+" })
+        .with_number("zOffset", above)
+        .with("country", country)
+        .with("type", kind)
+        .with("subtype", subtype)
+        .with("value", "-1")
+        .with("height", "0.75")
+        .with("width", "0.75");
+    let lanes =
+        own.numbers.iter().enumerate().filter(|(lane, _)| {
+            device.lanes.is_empty() || device.lanes.iter().any(|wanted| usize::from(*wanted) == *lane)
+        });
+    let validity = |(_, lane): (usize, &i32)| {
+        Element::new("validity").with("fromLane", lane.to_string()).with("toLane", lane.to_string())
+    };
+    element.children(lanes.map(validity))
+}
+
+/// The controller of a signal.
+fn controller(device: &Control, id: u32) -> Element {
+    let controls = Element::new("control").with("signalId", id.to_string()).with("type", "0");
+    Element::new("controller")
+        .with("id", id.to_string())
+        .with("name", format!("signal of {}", device.at))
+        .with("sequence", "0")
+        .child(controls)
+}
+
 /// Signals and signs, and a controller for each signal.
 pub(super) fn control(
     map: &GraphMap,
@@ -125,43 +166,10 @@ pub(super) fn control(
         let strips = if own.against { &spec.left } else { &spec.right };
         let beside = inner_edge_m(strips, strips.len(), s / line.length_m) + BESIDE_M;
         let id = u32::try_from(number + 1).expect("a scenario has few devices");
-        let is_signal = matches!(device.device, Device::Signal { .. });
-        let (name, [kind, subtype, country], above) = match device.device {
-            Device::Signal { .. } => ("signal", ["1000001", "-1", "OpenDRIVE"], SIGNAL_M),
-            Device::StopSign {} => ("stop sign", ["R1-1", "-1", "US"], SIGN_M),
-            Device::YieldSign {} => ("yield sign", ["R1-2", "-1", "US"], SIGN_M),
-        };
-        let mut element = Element::new("signal")
-            .with_number("s", rounded(s - first))
-            .with_number("t", rounded(if own.against { beside } else { -beside }))
-            .with("id", id.to_string())
-            .with("name", name)
-            .with("dynamic", if is_signal { "yes" } else { "no" })
-            .with("orientation", if own.against { "-" } else { "+" })
-            .with_number("zOffset", above)
-            .with("country", country)
-            .with("type", kind)
-            .with("subtype", subtype)
-            .with("value", "-1")
-            .with("height", "0.75")
-            .with("width", "0.75");
-        let lanes = own.numbers.iter().enumerate().filter(|(lane, _)| {
-            device.lanes.is_empty() || device.lanes.iter().any(|wanted| usize::from(*wanted) == *lane)
-        });
-        for (_, lane) in lanes {
-            let validity = Element::new("validity").with("fromLane", lane.to_string()).with("toLane", lane.to_string());
-            element = element.child(validity);
-        }
-        drive.roads[own.road].signals.push(element);
-        if is_signal {
-            let controls = Element::new("control").with("signalId", id.to_string()).with("type", "0");
-            drive.controllers.push(
-                Element::new("controller")
-                    .with("id", id.to_string())
-                    .with("name", format!("signal of {}", device.at))
-                    .with("sequence", "0")
-                    .child(controls),
-            );
+        let place = (s - first, if own.against { beside } else { -beside });
+        drive.roads[own.road].signals.push(signal(device, own, id, place));
+        if matches!(device.device, Device::Signal { .. }) {
+            drive.controllers.push(controller(device, id));
             let at = junction_at.get(&(own.road, own.against)).copied().unwrap_or(FIRST_JUNCTION_ID - 1);
             if let Some(junction) = drive.junctions.iter_mut().find(|junction| junction.id == at) {
                 junction.controllers.push(id);

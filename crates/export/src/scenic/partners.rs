@@ -6,7 +6,6 @@ use recrash_model::kinds::PartnerKind;
 use recrash_model::scenario::{Approach, DEFAULT_SPEED_KP, Policy, Start};
 use recrash_plan::{Crossing, Plan, Way};
 use recrash_roads::Footprint;
-use std::fmt::Write;
 
 /// The name of a partner's object.
 pub(super) fn variable(position: usize) -> String {
@@ -59,69 +58,121 @@ pub(super) fn crossings(context: &Context<'_>, position: usize) -> Vec<String> {
 /// The definition of a partner's behavior.
 pub(super) fn behavior(context: &Context<'_>, position: usize) -> String {
     let partner = &context.scenario.draft().partners[position];
-    let way = format!("PARTNER{}_WAY", position + 1);
-    let at = |field: &str, value: f64| context.value(&format!("/partners/{position}/policy/{field}"), value);
-    let step = |field: &str, value: u32| format!("{} * STEP", at(field, f64::from(value)));
-    let t = lateral_term(context, position);
-    let mut text = String::from("\n");
     if partner.kind == PartnerKind::Pedestrian {
         return walk(context, position);
     }
-    let _ =
-        writeln!(text, "behavior Partner{}():    # \"{}\", {}", position + 1, partner.id, policy_name(&partner.policy));
-    let hold = |speed: &str, gain: Option<f64>| match gain {
-        None => format!("hold(self, {speed})"),
-        Some(gain) if gain == DEFAULT_SPEED_KP => format!("hold(self, {speed})"),
-        Some(gain) => format!("hold(self, {speed}, {})", number(gain)),
-    };
-    let bends =
-        if bends(context, position).is_empty() { "()".to_owned() } else { format!("PARTNER{}_BENDS", position + 1) };
-    let take = |command: &str| format!("take drive(self, {way}, {command}, {t}, {bends})");
-    let forever = |command: &str| format!("        while True:\n            {}\n", take(command));
-    let window = |from: &str, until: &str, command: &str| {
-        format!("    interrupt when {from} <= seconds() + 1e-6 < {until}:\n        {}\n", take(command))
-    };
-    match partner.policy {
+    let writer = Writer::new(context, position);
+    let number = position + 1;
+    let head = format!("\nbehavior Partner{number}():    # \"{}\", {}\n", partner.id, policy_name(&partner.policy));
+    head + &match partner.policy {
         Policy::SuddenBrake { target_speed, brake_step, brake_steps, speed_kp } => {
-            let (from, during) = (step("brake_step", brake_step), step("brake_steps", brake_steps));
-            text.push_str("    try:\n");
-            text.push_str(&forever(&hold(&at("target_speed", target_speed), speed_kp)));
-            text.push_str(&window(&from, &format!("{from} + {during}"), "-1"));
+            let speed = writer.value("target_speed", target_speed);
+            writer.holds(&hold(&speed, speed_kp)) + &writer.brakes(brake_step, brake_steps)
         }
         Policy::AccelThenBrake { accel_mag, accel_steps, cruise_speed, brake_step, brake_steps, speed_kp } => {
-            let (from, during) = (step("brake_step", brake_step), step("brake_steps", brake_steps));
-            text.push_str("    try:\n");
-            text.push_str(&forever(&hold(&at("cruise_speed", cruise_speed), speed_kp)));
-            text.push_str(&window("0", &step("accel_steps", accel_steps), &at("accel_mag", accel_mag)));
-            text.push_str(&window(&from, &format!("{from} + {during}"), "-1"));
+            let speed = writer.value("cruise_speed", cruise_speed);
+            let throttle = writer.value("accel_mag", accel_mag);
+            writer.holds(&hold(&speed, speed_kp))
+                + &writer.window("0", &writer.step("accel_steps", accel_steps), &throttle)
+                + &writer.brakes(brake_step, brake_steps)
         }
         Policy::IdmNominal { target_speed_mps } => {
-            let speed = at("target_speed_mps", target_speed_mps);
-            let _ = writeln!(text, "    while True:\n        {}", take(&format!("follow(self, {way}, {speed})")));
+            let speed = writer.value("target_speed_mps", target_speed_mps);
+            writer.always(&format!("follow(self, {}, {speed})", writer.way))
         }
         Policy::Stopped { depart_step, target_speed_mps } => {
-            text.push_str("    try:\n");
-            text.push_str(&forever(&hold(&at("target_speed_mps", target_speed_mps), None)));
-            let until = depart_step.map_or_else(|| "math.inf".to_owned(), |from| step("depart_step", from));
-            text.push_str(&window("0", &until, "-1"));
+            let speed = writer.value("target_speed_mps", target_speed_mps);
+            let until = depart_step.map_or_else(|| "math.inf".to_owned(), |from| writer.step("depart_step", from));
+            writer.holds(&hold(&speed, None)) + &writer.window("0", &until, "-1")
         }
         Policy::Yielding { target_speed_mps, gap_s } => {
-            let (speed, gap) = (at("target_speed_mps", target_speed_mps), at("gap_s", gap_s));
-            let command = hold(&speed, None);
+            let speed = writer.value("target_speed_mps", target_speed_mps);
             if crossings(context, position).is_empty() {
-                let _ = writeln!(text, "    while True:\n        {}", take(&command));
+                writer.always(&hold(&speed, None))
             } else {
-                let _ = writeln!(
-                    text,
-                    "    standing = 0\n    while True:\n        standing = standing + 1 if self.speed < STANDING else 0\n        \
-                     wait = wait_after(self, {way}, PARTNER{}_CROSSINGS, {speed}, {gap}, standing)\n        \
-                     take drive(self, {way}, {command}, {t}, {bends}, wait)",
-                    position + 1,
-                );
+                writer.yields(&speed, &writer.value("gap_s", gap_s))
             }
         }
     }
-    text
+}
+
+/// The command that holds a speed.
+fn hold(speed: &str, gain: Option<f64>) -> String {
+    match gain {
+        Some(gain) if gain != DEFAULT_SPEED_KP => format!("hold(self, {speed}, {})", number(gain)),
+        _ => format!("hold(self, {speed})"),
+    }
+}
+
+/// Writes the body of one partner's behavior.
+struct Writer<'a> {
+    context: &'a Context<'a>,
+    position: usize,
+    way: String,
+    /// Its place across its lane.
+    t: String,
+    bends: String,
+}
+
+impl<'a> Writer<'a> {
+    fn new(context: &'a Context<'a>, position: usize) -> Self {
+        let number = position + 1;
+        let bent = !bends(context, position).is_empty();
+        Self {
+            context,
+            position,
+            way: format!("PARTNER{number}_WAY"),
+            t: lateral_term(context, position),
+            bends: if bent { format!("PARTNER{number}_BENDS") } else { "()".to_owned() },
+        }
+    }
+
+    /// A number of the policy.
+    fn value(&self, field: &str, value: f64) -> String {
+        self.context.value(&format!("/partners/{}/policy/{field}", self.position), value)
+    }
+
+    /// A step of the policy, as a time.
+    fn step(&self, field: &str, value: u32) -> String {
+        format!("{} * STEP", self.value(field, f64::from(value)))
+    }
+
+    fn take(&self, command: &str) -> String {
+        format!("take drive(self, {}, {command}, {}, {})", self.way, self.t, self.bends)
+    }
+
+    /// A command that nothing interrupts.
+    fn always(&self, command: &str) -> String {
+        format!("    while True:\n        {}\n", self.take(command))
+    }
+
+    /// A command that windows interrupt.
+    fn holds(&self, command: &str) -> String {
+        format!("    try:\n        while True:\n            {}\n", self.take(command))
+    }
+
+    /// Another command for a while.
+    fn window(&self, from: &str, until: &str, command: &str) -> String {
+        format!("    interrupt when {from} <= seconds() + 1e-6 < {until}:\n        {}\n", self.take(command))
+    }
+
+    /// Full brake for some steps.
+    fn brakes(&self, step: u32, steps: u32) -> String {
+        let (from, during) = (self.step("brake_step", step), self.step("brake_steps", steps));
+        self.window(&from, &format!("{from} + {during}"), "-1")
+    }
+
+    /// Holds a speed, and waits for who comes first.
+    fn yields(&self, speed: &str, gap: &str) -> String {
+        let Self { way, t, bends, .. } = self;
+        format!(
+            "    standing = 0\n    while True:\n        standing = standing + 1 if self.speed < STANDING else 0\n        \
+             wait = wait_after(self, {way}, PARTNER{}_CROSSINGS, {speed}, {gap}, standing)\n        \
+             take drive(self, {way}, {}, {t}, {bends}, wait)\n",
+            self.position + 1,
+            hold(speed, None)
+        )
+    }
 }
 
 /// A pedestrian walks along its way.

@@ -194,75 +194,98 @@ fn junction(rng: &mut Rng, three: bool) -> Ground {
 
 /// What somebody else does; and things that lie about.
 fn deed(rng: &mut Rng, which: usize, ground: &Ground, speed_mps: f64) -> (Value, Value) {
+    let kind = one_of(rng, &DRIVEN);
+    let plan = plan_on_the_road(rng, which, ground, kind, speed_mps);
+    let mut who = match (which, &ground.across) {
+        (6, Some((from, way))) => who_crosses(rng, kind, from, way),
+        (6 | 7, _) => who_steps_out(rng, ground),
+        _ => json!({ "id": "cp", "kind": kind, "plan": plan }),
+    };
+    if which == 4 {
+        who["kind"] = json!("passenger_car");
+        who["parts"] =
+            json!([{ "id": "door", "kind": "door", "x_m": 0.6, "y_m": 0.92, "length_m": 1, "width_m": 0.08 }]);
+    }
+    (who, things(rng, ground))
+}
+
+/// A place on the ego's road.
+fn on_road(ground: &Ground, s_m: f64, t_m: f64) -> Value {
+    json!({ "road": ground.from, "s_m": s_m, "t_m": t_m })
+}
+
+/// Who rides a bicycle is no faster than one. [m/s]
+fn no_faster(kind: &str, mps: f64) -> f64 {
+    if kind == "cyclist" { mps.min(6.0) } else { mps }
+}
+
+/// The plan of somebody on the ego's road: brakes, stands, swerves, backs up, opens a door, slows; nothing of the others.
+fn plan_on_the_road(rng: &mut Rng, which: usize, ground: &Ground, kind: &str, speed_mps: f64) -> Value {
     let road = ground.from;
     let along = json!([{ "lanes": { "roads": [road] } }]);
-    let at = |s_m: f64, t_m: f64| json!({ "road": road, "s_m": s_m, "t_m": t_m });
-    let kind = one_of(rng, &DRIVEN);
-    // Who rides a bicycle is no faster than one.
-    let faster = |mps: f64| if kind == "cyclist" { mps.min(6.0) } else { mps };
+    let at = |s_m: f64, t_m: f64| on_road(ground, s_m, t_m);
     let (ahead_m, place_m) = (ground.start_m + drawn(rng, 15.0, 25.0), ground.place_m);
     // Against a lane places count from its end.
     let until_m = ground.length_m - place_m + drawn(rng, 5.0, 15.0);
-    let plan = match which {
+    match which {
         0 => json!({
-            "start": at(ahead_m, 0.0), "speed_mps": faster(0.9 * speed_mps), "course": along,
+            "start": at(ahead_m, 0.0), "speed_mps": no_faster(kind, 0.9 * speed_mps), "course": along,
             "acts": [
                 { "when": { "time_s": drawn(rng, 1.0, 3.0) }, "do": { "stop": { "rate_mps2": drawn(rng, 2.0, 6.0) } } },
                 { "do": { "hold": { "for_s": drawn(rng, 0.5, 3.0) } } },
-                { "do": { "speed": { "to_mps": faster(speed_mps), "rate_mps2": 2 } } },
+                { "do": { "speed": { "to_mps": no_faster(kind, speed_mps), "rate_mps2": 2 } } },
             ],
         }),
         1 => json!({ "start": at(place_m, drawn(rng, -1.0, 1.0)) }),
         2 => json!({
-            "start": at(ahead_m, 0.0), "speed_mps": faster(drawn(rng, 3.0, 6.0)), "course": along,
+            "start": at(ahead_m, 0.0), "speed_mps": no_faster(kind, drawn(rng, 3.0, 6.0)), "course": along,
             "acts": [{ "when": { "time_s": drawn(rng, 0.5, 2.0) }, "do": { "shift": { "to_t_m": drawn(rng, -1.5, 1.5), "over_m": 15 } } }],
         }),
         3 => json!({
             "start": at(place_m, 0.0),
             "course": [{ "lanes": { "roads": [road], "until_m": until_m, "against": true, "reverse": true } }],
-            "acts": [{ "when": { "time_s": drawn(rng, 0.5, 3.0) }, "do": { "speed": { "to_mps": faster(1.8), "rate_mps2": 1 } } }],
+            "acts": [{ "when": { "time_s": drawn(rng, 0.5, 3.0) }, "do": { "speed": { "to_mps": no_faster(kind, 1.8), "rate_mps2": 1 } } }],
         }),
         4 => json!({
             "start": at(place_m, drawn(rng, 2.2, 3.0)),
             "acts": [{ "when": { "time_s": drawn(rng, 0.5, 5.0) }, "do": { "part": { "part": "door", "to_deg": -70, "over_s": 1 } } }],
         }),
         5 => json!({
-            "start": at(ahead_m, 0.0), "speed_mps": faster(speed_mps), "course": along,
-            "acts": [{ "when": { "time_s": drawn(rng, 0.5, 2.0) }, "do": { "speed": { "to_mps": faster(drawn(rng, 1.0, 4.0)), "rate_mps2": 1.5 } } }],
+            "start": at(ahead_m, 0.0), "speed_mps": no_faster(kind, speed_mps), "course": along,
+            "acts": [{ "when": { "time_s": drawn(rng, 0.5, 2.0) }, "do": { "speed": { "to_mps": no_faster(kind, drawn(rng, 1.0, 4.0)), "rate_mps2": 1.5 } } }],
         }),
         _ => json!(null),
-    };
-    let who = match (which, &ground.across) {
-        (6, Some((from, way))) => {
-            let mps = faster(drawn(rng, 5.0, 10.0));
-            let start = json!({ "road": from, "to_end_m": drawn(rng, 20.0, 50.0) });
-            json!({ "id": "cp", "kind": kind, "plan": { "start": start, "speed_mps": mps, "course": [{ "lanes": { "roads": way } }] } })
-        }
-        (6 | 7, _) => {
-            let kind = one_of(rng, &ON_FOOT);
-            let s_m = place_m.min(ground.straight_m - 4.0);
-            let from = ground.point(s_m, drawn(rng, 3.0, 5.0));
-            let to = ground.point(s_m, -drawn(rng, 3.0, 4.0));
-            let start = json!({ "x_m": from.x, "y_m": from.y, "heading_deg": ground.heading_deg + 90.0 });
-            let begin = json!({ "when": { "time_s": drawn(rng, 0.5, 4.0) }, "do": { "speed": { "to_mps": 1.4, "rate_mps2": 1.5 } } });
-            let course = json!([{ "path": { "points": [[to.x, to.y]] } }]);
-            json!({ "id": "cp", "kind": kind, "plan": { "start": start, "course": course, "acts": [begin] } })
-        }
-        _ => json!({ "id": "cp", "kind": kind, "plan": plan }),
-    };
-    let mut who = who;
-    if which == 4 {
-        who["kind"] = json!("passenger_car");
-        who["parts"] =
-            json!([{ "id": "door", "kind": "door", "x_m": 0.6, "y_m": 0.92, "length_m": 1, "width_m": 0.08 }]);
     }
-    let things = if rng.below(4) == 0 {
-        let thing = one_of(rng, &["cone", "barrier", "debris", "container"]);
-        json!([{ "kind": thing, "at": at(place_m + drawn(rng, -20.0, 20.0), drawn(rng, 1.4, 2.6)) }])
-    } else {
-        json!([])
-    };
-    (who, things)
+}
+
+/// Somebody from the side road.
+fn who_crosses(rng: &mut Rng, kind: &str, from: &str, way: &Value) -> Value {
+    let mps = no_faster(kind, drawn(rng, 5.0, 10.0));
+    let start = json!({ "road": from, "to_end_m": drawn(rng, 20.0, 50.0) });
+    json!({ "id": "cp", "kind": kind, "plan": { "start": start, "speed_mps": mps, "course": [{ "lanes": { "roads": way } }] } })
+}
+
+/// Somebody who walks or rolls across the ego's road.
+fn who_steps_out(rng: &mut Rng, ground: &Ground) -> Value {
+    let kind = one_of(rng, &ON_FOOT);
+    let s_m = ground.place_m.min(ground.straight_m - 4.0);
+    let from = ground.point(s_m, drawn(rng, 3.0, 5.0));
+    let to = ground.point(s_m, -drawn(rng, 3.0, 4.0));
+    let start = json!({ "x_m": from.x, "y_m": from.y, "heading_deg": ground.heading_deg + 90.0 });
+    let begin =
+        json!({ "when": { "time_s": drawn(rng, 0.5, 4.0) }, "do": { "speed": { "to_mps": 1.4, "rate_mps2": 1.5 } } });
+    let course = json!([{ "path": { "points": [[to.x, to.y]] } }]);
+    json!({ "id": "cp", "kind": kind, "plan": { "start": start, "course": course, "acts": [begin] } })
+}
+
+/// Now and then a thing at the edge of the lane.
+fn things(rng: &mut Rng, ground: &Ground) -> Value {
+    if rng.below(4) != 0 {
+        return json!([]);
+    }
+    let thing = one_of(rng, &["cone", "barrier", "debris", "container"]);
+    let at = on_road(ground, ground.place_m + drawn(rng, -20.0, 20.0), drawn(rng, 1.4, 2.6));
+    json!([{ "kind": thing, "at": at }])
 }
 
 /// What stands at the end of the ego's road: nothing, a signal, a sign.

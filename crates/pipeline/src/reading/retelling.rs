@@ -198,49 +198,6 @@ pub(crate) struct Second<'a> {
     pub stage_again: Option<&'a mut StageAgain<'a>>,
 }
 
-/// Takes the accounts that somebody else made: where the crash is told by it, or can be staged by whom `stage_again` asks. Who is not
-/// staged then is left as it was.
-///
-/// # Errors
-/// Those of `stage_again`.
-fn take_again(
-    (accounts, retold): (&mut [Account], &mut [Retold]),
-    again: Vec<(usize, Account)>,
-    incidents: &BTreeMap<&str, &Incident>,
-    stage_again: Option<&mut StageAgain>,
-) -> Result<(), PipelineError> {
-    let mut before: BTreeMap<usize, (Account, Retold)> = BTreeMap::new();
-    for (at, account) in again {
-        let other = Retold { account: at, result: reconstruct(&account) };
-        let is_told = other.untold().is_none();
-        if is_told || stage_again.is_some() && other.result.is_ok() {
-            let old = (std::mem::replace(&mut accounts[at], account), std::mem::replace(&mut retold[at], other));
-            before.extend((!is_told).then_some((at, old)));
-        }
-    }
-    let Some(stage_again) = stage_again else { return Ok(()) };
-    let is_unstaged = |each: &&Retold| each.untold() == Some(Untold::NotShown);
-    let asked = retold.iter().filter(is_unstaged).filter_map(|each| {
-        let account = &accounts[each.account];
-        let incident = incidents[account.incident.as_str()];
-        Some(Unstaged { incident, account, made: each.result.as_ref().ok()? })
-    });
-    let asked: Vec<Unstaged> = asked.collect();
-    let staged = stage_again(&asked)?;
-    let at: Vec<usize> = retold.iter().filter(is_unstaged).map(|each| each.account).collect();
-    for (at, made) in at.into_iter().zip(staged) {
-        match made {
-            Some(made) => retold[at].result = Ok(made),
-            None => {
-                if let Some(old) = before.remove(&at) {
-                    (accounts[at], retold[at]) = old;
-                }
-            }
-        }
-    }
-    Ok(())
-}
-
 /// Groups reports into incidents, reads and reconstructs each, and leaves those usable whose every told fact is shown: the
 /// report that speaks stands for its incident. What is not read whole, or all, is read by somebody else where there is one; that account is
 /// taken where the crash is told by it. Scenarios of what the rules tell go to `stagings`.
@@ -255,118 +212,204 @@ pub(crate) fn tell(
     stagings: &Stagings,
 ) -> Result<(RecordSet, AccountSet), PipelineError> {
     let incidents = records::incidents(&set);
-    let leading: BTreeMap<Place, &Incident> =
-        incidents.iter().filter_map(|incident| Some((place(&incident.leading()?.record), incident))).collect();
-    let kept = |incident: &&Incident| {
-        incident.leading().is_some_and(|report| filter.is_none_or(|filter| filter.keeps(&report.record)))
-    };
-    let read: Vec<&Incident> = incidents.iter().filter(kept).collect();
-    let mut accounts: Vec<Account> = read.par_iter().filter_map(|incident| recrash_reader::account(incident)).collect();
-    let mut retold = reconstruct_accounts(&accounts, progress);
-    let is_asked = |at: &usize| second.reads == Reads::All || is_incomplete(&accounts[*at], &retold[*at]);
-    let unread: Vec<usize> = (0..accounts.len()).filter(is_asked).collect();
-    let of_id: BTreeMap<&str, &Incident> = read.iter().map(|&incident| (incident.id.as_str(), incident)).collect();
-    let incident = |account: &Account| of_id[account.incident.as_str()];
-    let asked: Vec<Unread> =
-        unread.iter().map(|&at| Unread { incident: incident(&accounts[at]), account: &accounts[at] }).collect();
-    let again = (second.read_again)(&asked, accounts.len())?;
-    let again = unread.into_iter().zip(again).filter_map(|(at, account)| Some((at, account?))).collect();
-    take_again((&mut accounts, &mut retold), again, &of_id, second.stage_again)?;
-    for (account, retold) in accounts.iter().zip(&retold) {
-        if let (Ok(made), None) = (&retold.result, retold.untold())
-            && made.draft.source.author.is_rules()
-        {
-            stagings.keep(account, made);
+    let read: Vec<&Incident> = incidents.iter().filter(|incident| is_kept(incident, filter)).collect();
+    let mut telling = Telling::of(&read, progress);
+    telling.look_again(&read, second)?;
+    telling.keep(stagings);
+    let fates = fates(&set, &incidents, filter, &telling);
+    add_steps(&mut set, filter, &fates);
+    settle(&mut set, fates);
+    Ok((set, telling.into_set(incidents.len())))
+}
+
+/// Whether the report that leads an incident is one that the filter keeps.
+fn is_kept(incident: &Incident, filter: Option<&Filter>) -> bool {
+    incident.leading().is_some_and(|report| filter.is_none_or(|filter| filter.keeps(&report.record)))
+}
+
+/// The accounts of incidents, and what became of each: one list beside the other.
+struct Telling {
+    accounts: Vec<Account>,
+    retold: Vec<Retold>,
+}
+
+impl Telling {
+    /// What the built-in reader makes of these incidents.
+    fn of(read: &[&Incident], progress: &dyn Progress) -> Self {
+        let accounts: Vec<Account> = read.par_iter().filter_map(|incident| recrash_reader::account(incident)).collect();
+        let retold = reconstruct_accounts(&accounts, progress);
+        Self { accounts, retold }
+    }
+
+    /// Every account with what became of it.
+    fn each(&self) -> impl Iterator<Item = (&Account, &Retold)> {
+        self.accounts.iter().zip(&self.retold)
+    }
+
+    /// Has somebody else read what is not read whole, or all, and stage what is not shown as told. An account of theirs is taken where the
+    /// crash is told by it, or staged then; else the account stays as it was.
+    fn look_again(&mut self, read: &[&Incident], second: Second) -> Result<(), PipelineError> {
+        let of_id: BTreeMap<&str, &Incident> = read.iter().map(|&incident| (incident.id.as_str(), incident)).collect();
+        let is_asked = |at: &usize| second.reads == Reads::All || is_incomplete(&self.accounts[*at], &self.retold[*at]);
+        let positions: Vec<usize> = (0..self.accounts.len()).filter(is_asked).collect();
+        let unread = |&at: &usize| {
+            let account = &self.accounts[at];
+            Unread { incident: of_id[account.incident.as_str()], account }
+        };
+        let asked: Vec<Unread> = positions.iter().map(unread).collect();
+        let again = (second.read_again)(&asked, self.accounts.len())?;
+        let again = positions.into_iter().zip(again).filter_map(|(at, account)| Some((at, account?)));
+        let before = self.take(again.collect(), second.stage_again.is_some());
+        second.stage_again.map_or(Ok(()), |stage_again| self.stage_again(&of_id, before, stage_again))
+    }
+
+    /// Takes these accounts where the crash is told by them, and where there is a scene of it, if it is to be staged by somebody else. Gives
+    /// what stood in the place of the latter.
+    fn take(&mut self, again: Vec<(usize, Account)>, is_staged_again: bool) -> BTreeMap<usize, (Account, Retold)> {
+        let mut before = BTreeMap::new();
+        for (at, account) in again {
+            let other = Retold { account: at, result: reconstruct(&account) };
+            let is_told = other.untold().is_none();
+            if is_told || is_staged_again && other.result.is_ok() {
+                let account = std::mem::replace(&mut self.accounts[at], account);
+                let retold = std::mem::replace(&mut self.retold[at], other);
+                before.extend((!is_told).then_some((at, (account, retold))));
+            }
+        }
+        before
+    }
+
+    /// Has somebody else stage what is not shown as told; what they do not stage either is left as it was before.
+    fn stage_again(
+        &mut self,
+        incidents: &BTreeMap<&str, &Incident>,
+        mut before: BTreeMap<usize, (Account, Retold)>,
+        stage_again: &mut StageAgain,
+    ) -> Result<(), PipelineError> {
+        let unstaged = self.each().filter_map(|(account, retold)| {
+            retold.untold().filter(|why| *why == Untold::NotShown)?;
+            let made = retold.result.as_ref().ok()?;
+            Some((retold.account, Unstaged { incident: incidents[account.incident.as_str()], account, made }))
+        });
+        let (positions, unstaged): (Vec<usize>, Vec<Unstaged>) = unstaged.unzip();
+        for (at, made) in positions.into_iter().zip(stage_again(&unstaged)?) {
+            if let Some(made) = made {
+                self.retold[at].result = Ok(made);
+            } else if let Some(old) = before.remove(&at) {
+                (self.accounts[at], self.retold[at]) = old;
+            }
+        }
+        Ok(())
+    }
+
+    /// Hands on the scenarios of what the rules tell.
+    fn keep(&self, stagings: &Stagings) {
+        for (account, retold) in self.each() {
+            if let (Ok(made), None) = (&retold.result, retold.untold())
+                && made.draft.source.author.is_rules()
+            {
+                stagings.keep(account, made);
+            }
         }
     }
-    let of_incident: BTreeMap<&str, (&Account, &Retold)> =
-        accounts.iter().zip(&retold).map(|(account, retold)| (account.incident.as_str(), (account, retold))).collect();
 
-    // What becomes of each report that is left: merged, filtered out, unreadable, untold, or told.
-    type Fate = Result<Reading, RejectReason>;
+    /// The accounts for the stages that follow, told and untold, of so many incidents.
+    fn into_set(self, incidents: usize) -> AccountSet {
+        let untold = |(account, retold): (&Account, &Retold)| {
+            Some(UntoldIncident {
+                account: account.clone(),
+                why: retold.untold()?,
+                reason: retold.reason().unwrap_or_default(),
+            })
+        };
+        let untold = self.each().filter_map(untold).collect();
+        let (types, facts) = (type_shares(&self.accounts, &self.retold), fact_shares(&self.accounts, &self.retold));
+        let readable = self.accounts.len();
+        let mut told = self.accounts;
+        let mut is_told = self.retold.iter().map(|retold| retold.untold().is_none());
+        told.retain(|_| is_told.next().unwrap_or(false));
+        AccountSet { format: ACCOUNTS_FORMAT.to_owned(), incidents, readable, types, facts, told, untold }
+    }
+}
+
+/// What becomes of a report: what is read of it, or why it is left out.
+type Fate = Result<Reading, RejectReason>;
+
+/// What becomes of each report that is left: merged, filtered out, unreadable, untold, or told.
+fn fates(set: &RecordSet, incidents: &[Incident], filter: Option<&Filter>, telling: &Telling) -> Vec<Fate> {
+    let leading: BTreeMap<Place, &Incident> =
+        incidents.iter().filter_map(|incident| Some((place(&incident.leading()?.record), incident))).collect();
+    let of_incident: BTreeMap<&str, (&Account, &Retold)> =
+        telling.each().map(|(account, retold)| (account.incident.as_str(), (account, retold))).collect();
     let fate = |record: &CrashRecord| -> Fate {
         let incident = leading.get(&place(record)).ok_or(RejectReason::Merged)?;
-        if !kept(incident) {
+        if !is_kept(incident, filter) {
             return Err(RejectReason::FilteredOut);
         }
-        let Some((account, retold)) = of_incident.get(incident.id.as_str()) else {
-            return Err(match record.redaction {
-                Redaction::Redacted => RejectReason::RedactedNarrative,
-                Redaction::Empty => RejectReason::EmptyNarrative,
-                Redaction::Open => RejectReason::Untold(Untold::NoAccount),
-            });
-        };
-        match (retold.untold(), told(&account.crash_type)) {
-            (None, Some(crash_type)) => Ok(Reading {
-                incident: incident.id.clone(),
-                reports: account.reports.len(),
-                crash_type,
-                role: told(&account.role),
-                driver: told(&account.driver),
-                template: account.template(),
-            }),
-            (why, _) => Err(RejectReason::Untold(why.unwrap_or(Untold::NoAccount))),
-        }
+        let (account, retold) = of_incident.get(incident.id.as_str()).ok_or_else(|| why_no_account(record))?;
+        reading(incident, account, retold).map_err(RejectReason::Untold)
     };
-    let fates: Vec<Fate> = set.usable.iter().map(|&at| fate(&set.records[at])).collect();
-    let shares = (type_shares(&accounts, &retold), fact_shares(&accounts, &retold));
-    let untold = |(account, retold): (&Account, &Retold)| {
-        Some(UntoldIncident {
-            account: account.clone(),
-            why: retold.untold()?,
-            reason: retold.reason().unwrap_or_default(),
-        })
-    };
-    let untold = accounts.iter().zip(&retold).filter_map(untold).collect();
-    let is_told: Vec<bool> = retold.iter().map(|retold| retold.untold().is_none()).collect();
-    let (all, readable) = (incidents.len(), accounts.len());
-    let mut is_told = is_told.into_iter();
-    let mut told_accounts = accounts;
-    told_accounts.retain(|_| is_told.next().unwrap_or(false));
+    set.usable.iter().map(|&at| fate(&set.records[at])).collect()
+}
 
-    let usable = std::mem::take(&mut set.usable);
-    for (&at, fate) in usable.iter().zip(&fates) {
+/// Why there is no account of a record.
+fn why_no_account(record: &CrashRecord) -> RejectReason {
+    match record.redaction {
+        Redaction::Redacted => RejectReason::RedactedNarrative,
+        Redaction::Empty => RejectReason::EmptyNarrative,
+        Redaction::Open => RejectReason::Untold(Untold::NoAccount),
+    }
+}
+
+/// What is read of an incident whose crash is told; else why it is not.
+fn reading(incident: &Incident, account: &Account, retold: &Retold) -> Result<Reading, Untold> {
+    match (retold.untold(), told(&account.crash_type)) {
+        (None, Some(crash_type)) => Ok(Reading {
+            incident: incident.id.clone(),
+            reports: account.reports.len(),
+            crash_type,
+            role: told(&account.role),
+            driver: told(&account.driver),
+            template: account.template(),
+        }),
+        (why, _) => Err(why.unwrap_or(Untold::NoAccount)),
+    }
+}
+
+/// The steps that the usable reports go through, with those lost at each.
+fn add_steps(set: &mut RecordSet, filter: Option<&Filter>, fates: &[Fate]) {
+    let mut remaining = fates.len();
+    let mut step = |name: &str, is_lost_here: fn(&RejectReason) -> bool| {
+        let mut lost: BTreeMap<RejectReason, usize> = BTreeMap::new();
+        for reason in fates.iter().filter_map(|fate| fate.as_ref().err()).filter(|reason| is_lost_here(reason)) {
+            *lost.entry(*reason).or_default() += 1;
+        }
+        remaining -= lost.values().sum::<usize>();
+        set.funnel.push(FunnelStep { name: name.to_owned(), remaining, lost: lost.into_iter().collect() });
+    };
+    step("one report an incident", |reason| *reason == RejectReason::Merged);
+    if let Some(filter) = filter {
+        step(&format!("where {}", filter.text()), |reason| *reason == RejectReason::FilteredOut);
+    }
+    step("narrative readable", |reason| {
+        matches!(reason, RejectReason::RedactedNarrative | RejectReason::EmptyNarrative)
+    });
+    step("told as it happened", |reason| matches!(reason, RejectReason::Untold(_)));
+}
+
+/// Leaves those usable that are told, with what is read of them, and lists the others as rejected.
+fn settle(set: &mut RecordSet, fates: Vec<Fate>) {
+    for (at, fate) in std::mem::take(&mut set.usable).into_iter().zip(fates) {
+        let record = &mut set.records[at];
         match fate {
             Ok(reading) => {
-                set.records[at].reading = Some(reading.clone());
+                record.reading = Some(reading);
                 set.usable.push(at);
             }
             Err(reason) => {
-                let record = &set.records[at];
                 let (file, row) = (record.provenance.file.clone(), record.provenance.row);
-                set.rejects.push(Reject { file, row, record: Some(record.id.clone()), reason: *reason });
+                set.rejects.push(Reject { file, row, record: Some(record.id.clone()), reason });
             }
         }
     }
-    let lost_at = |step: fn(&RejectReason) -> bool| {
-        let mut counts: BTreeMap<RejectReason, usize> = BTreeMap::new();
-        for reason in fates.iter().filter_map(|fate| fate.as_ref().err()).filter(|reason| step(reason)) {
-            *counts.entry(*reason).or_default() += 1;
-        }
-        counts.into_iter().collect::<Vec<_>>()
-    };
-    let mut remaining = usable.len();
-    let mut step = |name: &str, lost: Vec<(RejectReason, usize)>| {
-        remaining -= lost.iter().map(|(_, count)| count).sum::<usize>();
-        set.funnel.push(FunnelStep { name: name.to_owned(), remaining, lost });
-    };
-    step("one report an incident", lost_at(|reason| *reason == RejectReason::Merged));
-    if let Some(filter) = filter {
-        step(&format!("where {}", filter.text()), lost_at(|reason| *reason == RejectReason::FilteredOut));
-    }
-    let unreadable =
-        |reason: &RejectReason| matches!(reason, RejectReason::RedactedNarrative | RejectReason::EmptyNarrative);
-    step("narrative readable", lost_at(unreadable));
-    step("told as it happened", lost_at(|reason| matches!(reason, RejectReason::Untold(_))));
-
-    let accounts = AccountSet {
-        format: ACCOUNTS_FORMAT.to_owned(),
-        incidents: all,
-        readable,
-        types: shares.0,
-        facts: shares.1,
-        told: told_accounts,
-        untold,
-    };
-    Ok((set, accounts))
 }

@@ -66,55 +66,19 @@ impl<'a> Case<'a> {
     /// Reads all that there is of a case.
     pub fn read(suite: &Suite, cases: &Cases, cluster: &'a Cluster) -> Result<Self, PipelineError> {
         let id = &cluster.scenario_id;
-        let store = suite.store();
-        let failure = failures::before(suite, id, Stage::Report);
-        let made =
-            |stage: Stage| failures::before(suite, id, stage).is_none() && failures::at(suite, id, stage).is_none();
         let by_account = cases.accounts.is_some();
-        let log = made(Stage::Narrate).then(|| store.read_json(&names::narrative_log(id))).transpose()?;
-        let narrative = match by_account {
-            true => Some(retold::account(suite, id).map(|account| tell(&account, id, cluster.template))),
-            false => made(Stage::Narrate).then(|| store.read_json(&names::narrative(id))),
-        };
-        // What a person spoiled stops its case at its design, and tells nothing.
-        let narrative = match narrative {
-            Some(Err(_)) if !made(Stage::Design) => None,
-            read => read.transpose()?,
-        };
-        let narrative = narrative.zip(log);
-        let reading = cases.records.records[cluster.pick_index].reading.as_ref().filter(|_| !cluster.invented);
-        let account = reading.map(|reading| AccountRow {
-            incident: reading.incident.clone(),
-            reports: reading.reports,
-            crash_type: reading.crash_type,
-            role: reading.role,
-            driver: reading.driver,
-        });
+        let made = Made { suite, id, by_account };
         let edited = edited_files(suite, id);
-        let design = made(Stage::Design).then(|| store.read_json(&names::design_log(id))).transpose()?;
-        // Who was parked is not tested: those runs are not there.
-        let run = |stage: Stage, scenario: String, run: String| -> Result<Option<Ran>, PipelineError> {
-            let there = made(stage) && (!by_account || store.stamp(&run).is_some());
-            there.then(|| ran(suite, id, &scenario, &run)).transpose()
-        };
-        let recorded = match by_account {
-            true => run(Stage::Simulate, names::scenario(id), names::recorded_run(id))?,
-            false => None,
-        };
-        let review = optional(suite, &names::review(id), made(Stage::Review) && recorded.is_some())?;
-        let first = run(Stage::Simulate, names::scenario(id), names::first_run(id))?;
-        let tuned = match run(Stage::Triage, names::tuned(id), names::tuned_run(id))? {
-            None => None,
-            Some(ran) => Some(Tuned {
-                ran,
-                log: store.read_json(&names::tune_log(id))?,
-                agent: store.read_json(&names::tune_agent(id))?,
-            }),
-        };
+        let narrative = made.narrative(cluster)?;
+        let design = made.log(Stage::Design, &names::design_log(id))?;
+        let recorded = made.recorded()?;
+        let review = optional(suite, &names::review(id), made.whole(Stage::Review) && recorded.is_some())?;
+        let first = made.run(Stage::Simulate, names::scenario(id), names::first_run(id))?;
+        let tuned = made.tuned()?;
         // Beside a tuned run belongs how the recorded driver fares in the tuned scenario.
         let recorded = match &tuned {
             Some(Tuned { log, .. }) if by_account && (log.best != 0 || !edited.is_empty()) => {
-                run(Stage::Triage, names::tuned(id), names::tuned_recorded_run(id))?
+                made.run(Stage::Triage, names::tuned(id), names::tuned_recorded_run(id))?
             }
             _ => recorded,
         };
@@ -124,16 +88,87 @@ impl<'a> Case<'a> {
             cluster,
             narrative,
             design,
-            account,
+            account: account_row(cases, cluster),
             recorded,
             review,
             first,
             tuned,
             triage,
             reference,
-            failure,
+            failure: failures::before(suite, id, Stage::Report),
             edited,
         })
+    }
+}
+
+/// What the record of a case says as an account, where its crash is one that is told.
+fn account_row(cases: &Cases, cluster: &Cluster) -> Option<AccountRow> {
+    let reading = cases.records.records[cluster.pick_index].reading.as_ref().filter(|_| !cluster.invented)?;
+    Some(AccountRow {
+        incident: reading.incident.clone(),
+        reports: reading.reports,
+        crash_type: reading.crash_type,
+        role: reading.role,
+        driver: reading.driver,
+    })
+}
+
+/// The files of one case.
+struct Made<'a> {
+    suite: &'a Suite,
+    id: &'a str,
+    by_account: bool,
+}
+
+impl Made<'_> {
+    /// Whether a stage came to its end, and those before it.
+    fn whole(&self, stage: Stage) -> bool {
+        failures::before(self.suite, self.id, stage).is_none() && failures::at(self.suite, self.id, stage).is_none()
+    }
+
+    /// What a stage wrote of how it went.
+    fn log<T: DeserializeOwned>(&self, stage: Stage, file: &str) -> Result<Option<T>, PipelineError> {
+        self.whole(stage).then(|| self.suite.store().read_json(file)).transpose()
+    }
+
+    /// A run of a stage. Who was parked is not tested: those runs are not there.
+    fn run(&self, stage: Stage, scenario: String, run: String) -> Result<Option<Ran>, PipelineError> {
+        let there = self.whole(stage) && (!self.by_account || self.suite.store().stamp(&run).is_some());
+        there.then(|| ran(self.suite, self.id, &scenario, &run)).transpose()
+    }
+
+    /// The narrative, or what the account tells, and who wrote it.
+    fn narrative(&self, cluster: &Cluster) -> Result<Option<(Narrative, AgentLog)>, PipelineError> {
+        let (suite, id) = (self.suite, self.id);
+        let log = self.log(Stage::Narrate, &names::narrative_log(id))?;
+        let narrative = match self.by_account {
+            true => Some(retold::account(suite, id).map(|account| tell(&account, id, cluster.template))),
+            false => self.whole(Stage::Narrate).then(|| suite.store().read_json(&names::narrative(id))),
+        };
+        // What a person spoiled stops its case at its design, and tells nothing.
+        let narrative = match narrative {
+            Some(Err(_)) if !self.whole(Stage::Design) => None,
+            read => read.transpose()?,
+        };
+        Ok(narrative.zip(log))
+    }
+
+    /// The recorded driver's run of the scenario as designed.
+    fn recorded(&self) -> Result<Option<Ran>, PipelineError> {
+        if !self.by_account {
+            return Ok(None);
+        }
+        self.run(Stage::Simulate, names::scenario(self.id), names::recorded_run(self.id))
+    }
+
+    /// The tuned scenario with its run, and how it was found.
+    fn tuned(&self) -> Result<Option<Tuned>, PipelineError> {
+        let Some(ran) = self.run(Stage::Triage, names::tuned(self.id), names::tuned_run(self.id))? else {
+            return Ok(None);
+        };
+        let store = self.suite.store();
+        let log = store.read_json(&names::tune_log(self.id))?;
+        Ok(Some(Tuned { ran, log, agent: store.read_json(&names::tune_agent(self.id))? }))
     }
 }
 

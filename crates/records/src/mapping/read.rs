@@ -1,6 +1,6 @@
 //! Crash files of another database, read by the rules of a mapping.
 
-use super::{Mapping, Piece, Source, Target, Unit};
+use super::{Join, Mapping, Piece, Source, Target, Unit};
 use crate::cells::{self, Cell};
 use crate::error::IngestError;
 use crate::fields::{UNKNOWN, code_named};
@@ -73,40 +73,13 @@ pub fn read_mapped(
         .map(|(source, hash)| MappedFile::read(source, hash))
         .collect::<Result<_, _>>()?;
     let files = files.as_slice();
-    // A name has folders in it where they are needed to tell files apart.
-    let is_named = |file: &MappedFile<'_>, name: &str| {
-        file.name.rsplit(['/', '\\']).next().is_some_and(|last| last.eq_ignore_ascii_case(name))
-    };
-    let mut joined_tables = Vec::new();
-    for join in &mapping.joins {
-        let key = format!("join.{}.file", join.prefix);
-        let found = files.iter().find(|file| is_named(file, &join.file));
-        joined_tables.push(read_table(found.ok_or_else(|| no_file(mapping, join.line, key, &join.file, files))?)?);
-    }
-    let mut joined = Vec::new();
-    for (join, table) in mapping.joins.iter().zip(&joined_tables) {
-        let column = |name: &str, key: &str| {
-            let key = format!("join.{}.{key}", join.prefix);
-            table.column(name).ok_or_else(|| no_column(mapping, join.line, key, name, table))
-        };
-        let on = column(&join.on, "on")?;
-        let only: Vec<(usize, &str)> = join
-            .only
-            .iter()
-            .map(|(name, value)| Ok((column(name, &format!("only.{name}"))?, value.trim())))
-            .collect::<Result<_, IngestError>>()?;
-        let mut rows = BTreeMap::new();
-        let mut repeated = 0;
-        for (_, row) in &table.raw.rows {
-            if only.iter().all(|(position, value)| text(row, *position) == *value) {
-                match rows.entry(text(row, on)) {
-                    std::collections::btree_map::Entry::Vacant(entry) => drop(entry.insert(row)),
-                    std::collections::btree_map::Entry::Occupied(_) => repeated += 1,
-                }
-            }
-        }
-        joined.push(Joined { table, rows, repeated });
-    }
+    let tables = joined_tables(mapping, files)?;
+    let joined: Vec<Joined<'_>> = mapping
+        .joins
+        .iter()
+        .zip(&tables)
+        .map(|(join, table)| join_by_key(mapping, join, table))
+        .collect::<Result<_, _>>()?;
 
     let mut contents = Vec::new();
     for source in files {
@@ -122,6 +95,46 @@ pub fn read_mapped(
         }
     }
     Ok(contents)
+}
+
+/// Whether a file is called so. A name has folders in it where they are needed to tell files apart.
+fn is_named(file: &MappedFile<'_>, name: &str) -> bool {
+    file.name.rsplit(['/', '\\']).next().is_some_and(|last| last.eq_ignore_ascii_case(name))
+}
+
+/// The table of each join.
+fn joined_tables(mapping: &Mapping, files: &[MappedFile<'_>]) -> Result<Vec<Table>, IngestError> {
+    let table = |join: &Join| {
+        let found = files.iter().find(|file| is_named(file, &join.file));
+        let missing = || no_file(mapping, join.line, format!("join.{}.file", join.prefix), &join.file, files);
+        read_table(found.ok_or_else(missing)?)
+    };
+    mapping.joins.iter().map(table).collect()
+}
+
+/// The rows of a joined table by its key, the first of those that have the same.
+fn join_by_key<'a>(mapping: &Mapping, join: &Join, table: &'a Table) -> Result<Joined<'a>, IngestError> {
+    let column = |name: &str, key: &str| {
+        let key = format!("join.{}.{key}", join.prefix);
+        table.column(name).ok_or_else(|| no_column(mapping, join.line, key, name, table))
+    };
+    let on = column(&join.on, "on")?;
+    let only: Vec<(usize, &str)> = join
+        .only
+        .iter()
+        .map(|(name, value)| Ok((column(name, &format!("only.{name}"))?, value.trim())))
+        .collect::<Result<_, IngestError>>()?;
+    let mut rows = BTreeMap::new();
+    let mut repeated = 0;
+    for (_, row) in &table.raw.rows {
+        if only.iter().all(|(position, value)| text(row, *position) == *value) {
+            match rows.entry(text(row, on)) {
+                std::collections::btree_map::Entry::Vacant(entry) => drop(entry.insert(row)),
+                std::collections::btree_map::Entry::Occupied(_) => repeated += 1,
+            }
+        }
+    }
+    Ok(Joined { table, rows, repeated })
 }
 
 /// The joined files stand among the sources, with no rows of their own: a row of theirs is a part of a report.

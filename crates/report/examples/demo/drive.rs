@@ -174,126 +174,156 @@ pub fn least_gap(plan: &Plan, arrival_gap_s: f64) -> Timed {
     least(gaps(plan, &ego, &partner).into_iter())
 }
 
-/// A run with this delay, up to a second after a contact.
+/// A run with this delay, up to a contact.
 pub fn run(cluster: &Cluster, plan: &Plan, arrival_gap_s: f64, rerun_command: String) -> RunView {
-    let [mut ego, mut partner] = plan.states(arrival_gap_s);
-    let touch = gaps(plan, &ego, &partner).iter().position(|gap| *gap == 0.0);
-    if let Some(step) = touch {
-        ego.truncate(step + 1);
-        partner.truncate(step + 1);
-    }
-    let gap_m = gaps(plan, &ego, &partner);
-    let min_gap = least(gap_m.iter().copied());
-    let centres = least(ego.iter().zip(&partner).map(|(e, p)| e.position().distance(p.position())));
-    let end = (ego.len() - 1) as f64 * STEP_S;
-    let car = VehicleSpec::of(PartnerKind::PassengerCar);
-    let other = VehicleSpec::of(plan.partner_kind);
-    let acceleration = |states: &[ActorState]| -> Vec<f64> {
-        let change = states.windows(2).map(|pair| (pair[1].speed() - pair[0].speed()) / STEP_S);
-        change.chain([0.0]).collect()
-    };
-    let series = Series {
-        time_s: (0..ego.len()).map(|step| step as f64 * STEP_S).collect(),
-        ego_speed_mps: ego.iter().map(|state| state.speed()).collect(),
-        ego_acceleration_mps2: acceleration(&ego),
-        partners: vec![PartnerSeries {
-            actor: 1,
-            id: "cp1".into(),
-            speed_mps: partner.iter().map(|state| state.speed()).collect(),
-            acceleration_mps2: acceleration(&partner),
-            gap_m,
-            centre_distance_m: ego.iter().zip(&partner).map(|(e, p)| e.position().distance(p.position())).collect(),
-            ttc_s: vec![None; ego.len()],
-        }],
-    };
-    let hardest = least(series.ego_acceleration_mps2.iter().copied());
-    let contact = touch.map(|step| Contact {
-        actor: 1,
-        id: "cp1".into(),
-        time_s: end,
-        ego_zone: if cluster.number.is_multiple_of(2) { ContactZone::Left } else { ContactZone::FrontRight },
-        other_zone: ContactZone::Front,
-        kind: if plan.drift { CollisionKind::Sideswipe } else { CollisionKind::Angle },
-        relative_speed_mps: (ego[step].speed() + partner[step].speed()) * 0.7,
-        ego_speed_mps: ego[step].speed(),
-        other_speed_mps: partner[step].speed(),
-    });
-    let mut findings = Vec::new();
-    if let Some(contact) = &contact {
-        findings.push(Finding {
-            kind: FindingKind::Contact,
-            time_s: end,
-            value: contact.relative_speed_mps,
-            threshold: 0.0,
-            sentence: format!("The ego touched cp1 at a relative speed of {:.1} m/s.", contact.relative_speed_mps),
-        });
-    } else if min_gap.value < 2.0 {
-        findings.push(Finding {
-            kind: FindingKind::NearMiss,
-            time_s: min_gap.time_s,
-            value: min_gap.value,
-            threshold: 2.0,
-            sentence: format!("The gap to cp1 fell to {:.2} m, below 2.00 m.", min_gap.value),
-        });
-    }
-    if -hardest.value > 4.0 {
-        findings.push(Finding {
-            kind: FindingKind::HardBraking,
-            time_s: hardest.time_s,
-            value: -hardest.value,
-            threshold: 4.0,
-            sentence: format!("The ego braked at {:.1} m/s².", -hardest.value),
-        });
-    }
-    let termination = Termination {
-        kind: if touch.is_some() { TerminationKind::Contact } else { TerminationKind::Arrived },
-        time_s: end,
-    };
+    let driven = Driven::of(plan, arrival_gap_s);
+    let series = driven.series();
+    let contact = driven.contact(cluster);
+    let metrics = driven.metrics(&series, contact.clone(), arrival_gap_s);
+    let findings = findings(&metrics);
     let severity = contact.as_ref().map(severity);
-    let metrics = Metrics {
-        partners: vec![PartnerMetrics {
+    RunView {
+        scenario: scenario(cluster, plan, arrival_gap_s),
+        run: JudgedRun::new(driven.rollout(cluster), metrics, findings, severity, verdict(cluster, contact.is_some())),
+        series,
+        rerun_command,
+    }
+}
+
+/// Two cars that were driven, up to where they touch.
+struct Driven<'a> {
+    plan: &'a Plan,
+    ego: Vec<ActorState>,
+    partner: Vec<ActorState>,
+    touched: bool,
+}
+
+impl<'a> Driven<'a> {
+    fn of(plan: &'a Plan, arrival_gap_s: f64) -> Self {
+        let [mut ego, mut partner] = plan.states(arrival_gap_s);
+        let touch = gaps(plan, &ego, &partner).iter().position(|gap| *gap == 0.0);
+        if let Some(step) = touch {
+            ego.truncate(step + 1);
+            partner.truncate(step + 1);
+        }
+        Self { plan, ego, partner, touched: touch.is_some() }
+    }
+
+    /// Time of the last state. [s]
+    fn end_s(&self) -> f64 {
+        (self.ego.len() - 1) as f64 * STEP_S
+    }
+
+    /// The states that the run ends with.
+    fn last(&self) -> (ActorState, ActorState) {
+        (self.ego[self.ego.len() - 1], self.partner[self.partner.len() - 1])
+    }
+
+    fn ends(&self) -> Termination {
+        let kind = if self.touched { TerminationKind::Contact } else { TerminationKind::Arrived };
+        Termination { kind, time_s: self.end_s() }
+    }
+
+    fn series(&self) -> Series {
+        let speeds = |states: &[ActorState]| states.iter().map(|state| state.speed()).collect();
+        let accelerations = |states: &[ActorState]| {
+            let change = states.windows(2).map(|pair| (pair[1].speed() - pair[0].speed()) / STEP_S);
+            change.chain([0.0]).collect()
+        };
+        let (ego, partner) = (&self.ego, &self.partner);
+        Series {
+            time_s: (0..ego.len()).map(|step| step as f64 * STEP_S).collect(),
+            ego_speed_mps: speeds(ego),
+            ego_acceleration_mps2: accelerations(ego),
+            partners: vec![PartnerSeries {
+                actor: 1,
+                id: "cp1".into(),
+                speed_mps: speeds(partner),
+                acceleration_mps2: accelerations(partner),
+                gap_m: gaps(self.plan, ego, partner),
+                centre_distance_m: ego.iter().zip(partner).map(|(e, p)| e.position().distance(p.position())).collect(),
+                ttc_s: vec![None; ego.len()],
+            }],
+        }
+    }
+
+    fn contact(&self, cluster: &Cluster) -> Option<Contact> {
+        let (ego, partner) = self.last();
+        self.touched.then(|| Contact {
             actor: 1,
             id: "cp1".into(),
-            min_gap,
-            min_centre_distance: centres,
-            min_ttc: Some(Timed { value: 0.4 + min_gap.value / 3.0, time_s: (min_gap.time_s - 0.5).max(0.0) }),
-            pet: touch.is_none().then_some(Timed { value: (arrival_gap_s - 0.6).max(0.1), time_s: min_gap.time_s }),
-            max_drac: Some(Timed { value: 9.0 / (0.6 + min_gap.value), time_s: min_gap.time_s }),
-            max_required_deceleration: Some(Timed { value: 6.0 / (0.6 + min_gap.value), time_s: min_gap.time_s }),
-            min_headway: None,
-        }],
-        obstacle_gaps: vec![],
-        contact,
-        obstacles_hit: vec![],
-        min_gap: Some(min_gap),
-        min_centre_distance: Some(centres),
-        ego: EgoMetrics {
-            max_deceleration: Timed { value: -hardest.value, time_s: hardest.time_s },
-            tyre_limit_mps2: recrash_model::vehicle::TYRE_LIMIT_MPS2,
-            phantom_braking: None,
-            max_reversals: 1,
-            max_reversals_time_s: 4.0,
-            max_lane_departure: Timed { value: 0.05, time_s: 5.0 },
-            distance_m: plan.ego_speed * end,
-            mean_speed_mps: plan.ego_speed,
-        },
-        termination: termination.kind,
-        duration_s: end,
-    };
-    let events = match touch {
-        Some(step) => vec![Event {
-            time_s: end,
-            kind: EventKind::Contact { a: 0, b: 1, a_state: ego[step], b_state: partner[step] },
-        }],
-        None => vec![],
-    };
-    let cones = |i: i32| PlacedObstacle {
-        kind: ObstacleKind::Cone,
-        pose: Pose { position: Vec2::new(45.0 + 6.0 * f64::from(i), -2.4), heading: 0.0 },
-        length_m: 0.4,
-        width_m: 0.4,
-    };
-    let track = |id: &str, role, kind, spec: VehicleSpec, states| ActorTrack {
+            time_s: self.end_s(),
+            ego_zone: if cluster.number.is_multiple_of(2) { ContactZone::Left } else { ContactZone::FrontRight },
+            other_zone: ContactZone::Front,
+            kind: if self.plan.drift { CollisionKind::Sideswipe } else { CollisionKind::Angle },
+            relative_speed_mps: (ego.speed() + partner.speed()) * 0.7,
+            ego_speed_mps: ego.speed(),
+            other_speed_mps: partner.speed(),
+        })
+    }
+
+    fn metrics(&self, series: &Series, contact: Option<Contact>, arrival_gap_s: f64) -> Metrics {
+        let min_gap = least(series.partners[0].gap_m.iter().copied());
+        let centres = least(series.partners[0].centre_distance_m.iter().copied());
+        let hardest = least(series.ego_acceleration_mps2.iter().copied());
+        let pet = Timed { value: (arrival_gap_s - 0.6).max(0.1), time_s: min_gap.time_s };
+        Metrics {
+            partners: vec![PartnerMetrics {
+                actor: 1,
+                id: "cp1".into(),
+                min_gap,
+                min_centre_distance: centres,
+                min_ttc: Some(Timed { value: 0.4 + min_gap.value / 3.0, time_s: (min_gap.time_s - 0.5).max(0.0) }),
+                pet: contact.is_none().then_some(pet),
+                max_drac: Some(Timed { value: 9.0 / (0.6 + min_gap.value), time_s: min_gap.time_s }),
+                max_required_deceleration: Some(Timed { value: 6.0 / (0.6 + min_gap.value), time_s: min_gap.time_s }),
+                min_headway: None,
+            }],
+            obstacle_gaps: vec![],
+            contact,
+            obstacles_hit: vec![],
+            min_gap: Some(min_gap),
+            min_centre_distance: Some(centres),
+            ego: EgoMetrics {
+                max_deceleration: Timed { value: -hardest.value, time_s: hardest.time_s },
+                tyre_limit_mps2: recrash_model::vehicle::TYRE_LIMIT_MPS2,
+                phantom_braking: None,
+                max_reversals: 1,
+                max_reversals_time_s: 4.0,
+                max_lane_departure: Timed { value: 0.05, time_s: 5.0 },
+                distance_m: self.plan.ego_speed * self.end_s(),
+                mean_speed_mps: self.plan.ego_speed,
+            },
+            termination: self.ends().kind,
+            duration_s: self.end_s(),
+        }
+    }
+
+    fn rollout(self, cluster: &Cluster) -> Rollout {
+        let plan = self.plan;
+        let termination = self.ends();
+        let (a_state, b_state) = self.last();
+        let contact = Event { time_s: termination.time_s, kind: EventKind::Contact { a: 0, b: 1, a_state, b_state } };
+        Rollout {
+            format: ROLLOUT_FORMAT.into(),
+            scenario_id: cluster.scenario_id.clone(),
+            simulator: "demonstration kinematics".into(),
+            ego: "metadrive-idm".into(),
+            events: if self.touched { vec![contact] } else { vec![] },
+            actors: vec![
+                track(EGO_ID, Role::Ego, PartnerKind::PassengerCar, self.ego),
+                track("cp1", Role::Partner, plan.partner_kind, self.partner),
+            ],
+            obstacles: if plan.work_zone { (0..5).map(cone).collect() } else { vec![] },
+            termination,
+            state_hash: format!("{:016x}", 0x9e37_79b9_7f4a_7c15_u64.wrapping_mul(cluster.number as u64)),
+        }
+    }
+}
+
+fn track(id: &str, role: Role, kind: PartnerKind, states: Vec<ActorState>) -> ActorTrack {
+    let size = VehicleSpec::of(kind);
+    ActorTrack {
         part_of: None,
         mass_kg: None,
         appears_s: 0.0,
@@ -301,30 +331,49 @@ pub fn run(cluster: &Cluster, plan: &Plan, arrival_gap_s: f64, rerun_command: St
         id: id.into(),
         role,
         kind,
-        length_m: spec.length_m,
-        width_m: spec.width_m,
+        length_m: size.length_m,
+        width_m: size.width_m,
         states,
-    };
-    let rollout = Rollout {
-        format: ROLLOUT_FORMAT.into(),
-        scenario_id: cluster.scenario_id.clone(),
-        simulator: "demonstration kinematics".into(),
-        ego: "metadrive-idm".into(),
-        actors: vec![
-            track(EGO_ID, Role::Ego, PartnerKind::PassengerCar, car, ego),
-            track("cp1", Role::Partner, plan.partner_kind, other, partner),
-        ],
-        obstacles: if plan.work_zone { (0..5).map(cones).collect() } else { vec![] },
-        events,
-        termination,
-        state_hash: format!("{:016x}", 0x9e37_79b9_7f4a_7c15_u64.wrapping_mul(cluster.number as u64)),
-    };
-    RunView {
-        scenario: scenario(cluster, plan, arrival_gap_s),
-        run: JudgedRun::new(rollout, metrics, findings, severity, verdict(cluster, touch.is_some())),
-        series,
-        rerun_command,
     }
+}
+
+/// One of the cones beside the ego's way.
+fn cone(number: i32) -> PlacedObstacle {
+    PlacedObstacle {
+        kind: ObstacleKind::Cone,
+        pose: Pose { position: Vec2::new(45.0 + 6.0 * f64::from(number), -2.4), heading: 0.0 },
+        length_m: 0.4,
+        width_m: 0.4,
+    }
+}
+
+/// A contact or a near miss, and hard braking.
+fn findings(metrics: &Metrics) -> Vec<Finding> {
+    let PartnerMetrics { min_gap, .. } = metrics.partners[0];
+    let braking = metrics.ego.max_deceleration;
+    let near = metrics.contact.is_none() && min_gap.value < 2.0;
+    let contact = metrics.contact.as_ref().map(|contact| Finding {
+        kind: FindingKind::Contact,
+        time_s: contact.time_s,
+        value: contact.relative_speed_mps,
+        threshold: 0.0,
+        sentence: format!("The ego touched cp1 at a relative speed of {:.1} m/s.", contact.relative_speed_mps),
+    });
+    let near_miss = near.then(|| Finding {
+        kind: FindingKind::NearMiss,
+        time_s: min_gap.time_s,
+        value: min_gap.value,
+        threshold: 2.0,
+        sentence: format!("The gap to cp1 fell to {:.2} m, below 2.00 m.", min_gap.value),
+    });
+    let hard_braking = (braking.value > 4.0).then(|| Finding {
+        kind: FindingKind::HardBraking,
+        time_s: braking.time_s,
+        value: braking.value,
+        threshold: 4.0,
+        sentence: format!("The ego braked at {:.1} m/s².", braking.value),
+    });
+    [contact, near_miss, hard_braking].into_iter().flatten().collect()
 }
 
 /// Two of one mass that stick together, head-on.

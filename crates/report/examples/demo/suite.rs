@@ -50,6 +50,11 @@ fn pick<T: Copy>(rng: &mut recrash_model::seed::Rng, of: &[T]) -> T {
     of[(rng.uniform() * of.len() as f64) as usize]
 }
 
+/// The report of a record.
+fn reference(index: usize) -> RecordRef {
+    RecordRef { report_id: format!("90000-{:04}", 1000 + index), version: 1 + u32::from(index.is_multiple_of(3)) }
+}
+
 fn record(index: usize, template: Template, seed: Seed) -> CrashRecord {
     let mut rng = seed.child(&format!("record {index}")).rng();
     let places = ["Phoenix, AZ", "San Francisco, CA", "Tempe, AZ", "Austin, TX", "Los Angeles, CA", "Las Vegas, NV"];
@@ -70,10 +75,7 @@ fn record(index: usize, template: Template, seed: Seed) -> CrashRecord {
         verb(template.cp),
     );
     CrashRecord {
-        id: RecordRef {
-            report_id: format!("90000-{:04}", 1000 + index),
-            version: 1 + u32::from(index.is_multiple_of(3)),
-        },
+        id: reference(index),
         incident_id: Some(format!("made-up-{}", index / 2)),
         entity: pick(&mut rng, &["Example Mobility LLC", "Sample Robotics", "Placeholder AV, Inc."]).to_owned(),
         vehicle: pick(&mut rng, &["Example Shuttle 2022", "Sample Hatchback 2023"]).to_owned(),
@@ -111,6 +113,30 @@ fn selection(seed: Seed) -> Selection {
         .iter()
         .map(|&line| TemplateCount { template: template(line), records: line.4, picks: line.5 })
         .collect();
+    let (clusters, map) = clusters(&counts, seed);
+    Selection {
+        strategy: Strategy::Stratified,
+        budget: 20,
+        seed: 7,
+        embedding: EmbeddingInfo {
+            name: "tf-idf + truncated SVD".into(),
+            source_dimensions: 412,
+            dimensions: 6,
+            explained_variance: 0.413,
+        },
+        template_weight: 1.0,
+        weighting: Weighting::Frequency,
+        inertia: 61.3,
+        tables: tables(&counts),
+        coverage: coverage(&counts),
+        templates: counts,
+        clusters,
+        map,
+    }
+}
+
+/// The records of each template, dealt to its picks, and every record's place on the map.
+fn clusters(counts: &[TemplateCount], seed: Seed) -> (Vec<Cluster>, Vec<MapPoint>) {
     let (mut clusters, mut map, mut first) = (Vec::new(), Vec::new(), 0);
     for (order, count) in counts.iter().enumerate() {
         let members: Vec<usize> = (first..first + count.records).collect();
@@ -130,10 +156,7 @@ fn selection(seed: Seed) -> Selection {
                 number,
                 scenario_id: format!("{number:02}-{}", count.template.slug()),
                 template: count.template,
-                pick: RecordRef {
-                    report_id: format!("90000-{:04}", 1000 + own[0]),
-                    version: 1 + u32::from(own[0].is_multiple_of(3)),
-                },
+                pick: reference(own[0]),
                 pick_index: own[0],
                 members: own,
                 radius: 0.8 + 0.1 * part as f64,
@@ -142,61 +165,54 @@ fn selection(seed: Seed) -> Selection {
         }
     }
     map.sort_by_key(|point| point.record);
-    let total: usize = counts.iter().map(|count| count.records).sum();
+    (clusters, map)
+}
+
+/// How many records have what.
+fn tables(counts: &[TemplateCount]) -> StageTables {
+    let records = |has: &dyn Fn(&Template) -> bool| {
+        counts.iter().filter(|count| has(&count.template)).map(|count| count.records).sum()
+    };
     let matrix = |cp: Movement| {
-        let cell = |sv: Movement| {
-            counts.iter().filter(|c| c.template.sv == sv && c.template.cp == cp).map(|c| c.records).sum()
-        };
+        let cell = |sv: Movement| records(&|template| template.sv == sv && template.cp == cp);
         (cp, Movement::PAPER.map(cell).to_vec())
     };
-    let road = |road: RoadType| (road, counts.iter().filter(|c| c.template.road == road).map(|c| c.records).sum());
+    let road = |road: RoadType| (road, records(&|template| template.road == road));
+    StageTables {
+        road_types: [RoadType::Intersection, RoadType::Highway, RoadType::TrafficCircle].map(road).to_vec(),
+        sv_movements: Movement::PAPER.to_vec(),
+        movements: Movement::PAPER.map(matrix).to_vec(),
+        work_zone: records(&|template| template.work_zone),
+        largest_template: counts[0].records,
+    }
+}
+
+/// What the picks cover: every template that occurs.
+fn coverage(counts: &[TemplateCount]) -> Coverage {
+    let total: usize = counts.iter().map(|count| count.records).sum();
     let observed: Vec<Template> = counts.iter().map(|count| count.template).collect();
     let possible = profile().templates();
     let pair =
         ValuePair { road: Some(RoadType::TrafficCircle), sv: Some(Movement::Straight), cp: None, work_zone: None };
-    Selection {
-        strategy: Strategy::Stratified,
-        budget: 20,
-        seed: 7,
-        embedding: EmbeddingInfo {
-            name: "tf-idf + truncated SVD".into(),
-            source_dimensions: 412,
-            dimensions: 6,
-            explained_variance: 0.413,
-        },
-        template_weight: 1.0,
-        weighting: Weighting::Frequency,
-        inertia: 61.3,
-        tables: StageTables {
-            road_types: [RoadType::Intersection, RoadType::Highway, RoadType::TrafficCircle].map(road).to_vec(),
-            sv_movements: Movement::PAPER.to_vec(),
-            movements: Movement::PAPER.map(matrix).to_vec(),
-            work_zone: counts.iter().filter(|c| c.template.work_zone).map(|c| c.records).sum(),
-            largest_template: counts[0].records,
-        },
-        coverage: Coverage {
-            templates_possible: possible.len(),
-            templates_observed: counts.len(),
-            templates_covered: counts.len(),
-            records_covered: total,
-            records: total,
-            radius: 1.31,
-            mean_distance: 0.42,
-            embedding_radius: 1.05,
-            embedding_mean_distance: 0.37,
-            pairs: PairCoverage {
-                possible: 37,
-                observed: 31,
-                covered: 31,
-                holes_observed: vec![],
-                holes_possible: vec![pair],
-            },
+    Coverage {
+        templates_possible: possible.len(),
+        templates_observed: counts.len(),
+        templates_covered: counts.len(),
+        records_covered: total,
+        records: total,
+        radius: 1.31,
+        mean_distance: 0.42,
+        embedding_radius: 1.05,
+        embedding_mean_distance: 0.37,
+        pairs: PairCoverage {
+            possible: 37,
+            observed: 31,
+            covered: 31,
             holes_observed: vec![],
-            holes_possible: possible.into_iter().filter(|template| !observed.contains(template)).collect(),
+            holes_possible: vec![pair],
         },
-        templates: counts,
-        clusters,
-        map,
+        holes_observed: vec![],
+        holes_possible: possible.into_iter().filter(|template| !observed.contains(template)).collect(),
     }
 }
 
@@ -232,55 +248,18 @@ fn profile() -> SystemProfile {
 }
 
 fn narrative(cluster: &Cluster, record: &CrashRecord, records: &[CrashRecord], plan: &Plan) -> Narrative {
-    let words = |words: &str| FactSource::Words { record: record.id.clone(), words: words.into() };
-    let column = |column: &str, text: &str| FactSource::Column {
-        record: record.id.clone(),
-        column: column.into(),
-        text: text.into(),
-    };
-    let sv_speed = match record.sv_speed_mps {
-        Some(_) => column("SV Precrash Speed (MPH)", "as filed"),
-        None => FactSource::Assumed { why: "the column is empty; a town speed is taken".into() },
-    };
-    let left = record.narrative.contains("from the left");
-    let facts = vec![
-        Fact {
-            value: FactValue::SvMovement { movement: cluster.template.sv },
-            source: column("SV Pre-Crash Movement", cluster.template.sv.label()),
-        },
-        Fact {
-            value: FactValue::CpMovement { movement: cluster.template.cp },
-            source: column("CP Pre-Crash Movement", cluster.template.cp.label()),
-        },
-        Fact {
-            value: FactValue::Approach { approach: if left { Approach::Left } else { Approach::Right } },
-            source: words(if left { "from the left" } else { "from the right" }),
-        },
-        Fact { value: FactValue::CpSignal { signal: Signal::Red }, source: words("against a red light") },
-        Fact { value: FactValue::SvSpeed { speed_mps: plan.ego_speed }, source: sv_speed },
-        Fact {
-            value: FactValue::CpSpeed { speed_mps: plan.partner_speed },
-            source: FactSource::Assumed { why: "no record gives it; the posted speed is taken".into() },
-        },
-        Fact {
-            value: FactValue::Contact { sv: record.sv_zones.clone(), cp: record.cp_zones.clone() },
-            source: column("SV Contact Area, CP Contact Area", "as ticked"),
-        },
-    ];
+    let side = if record.narrative.contains("from the left") { "left" } else { "right" };
     Narrative {
         format: NARRATIVE_FORMAT.into(),
         scenario_id: cluster.scenario_id.clone(),
         template: cluster.template,
         records: vec![record.id.clone()],
         text: format!(
-            "{}. The ego drives at {:.1} m/s. A car comes from the {} at {:.1} m/s and does not yield; its front meets the \
+            "{}. The ego drives at {:.1} m/s. A car comes from the {side} at {:.1} m/s and does not yield; its front meets the \
              side of the ego.",
-            cluster.template,
-            plan.ego_speed,
-            if left { "left" } else { "right" },
-            plan.partner_speed
+            cluster.template, plan.ego_speed, plan.partner_speed
         ),
-        facts,
+        facts: facts(cluster, record, plan, side),
         origin: if cluster.number.is_multiple_of(6) {
             Origin::Invented { reason: "the record describes a rear-end collision, which the profile excludes".into() }
         } else if cluster.number == 7 {
@@ -293,48 +272,55 @@ fn narrative(cluster: &Cluster, record: &CrashRecord, records: &[CrashRecord], p
     }
 }
 
+/// The facts of a narrative, each from a column, from words or assumed.
+fn facts(cluster: &Cluster, record: &CrashRecord, plan: &Plan, side: &str) -> Vec<Fact> {
+    let words = |words: &str| FactSource::Words { record: record.id.clone(), words: words.into() };
+    let column = |column: &str, text: &str| FactSource::Column {
+        record: record.id.clone(),
+        column: column.into(),
+        text: text.into(),
+    };
+    let assumed = |why: &str| FactSource::Assumed { why: why.into() };
+    let sv_speed = match record.sv_speed_mps {
+        Some(_) => column("SV Precrash Speed (MPH)", "as filed"),
+        None => assumed("the column is empty; a town speed is taken"),
+    };
+    let approach = if side == "left" { Approach::Left } else { Approach::Right };
+    let Template { sv, cp, .. } = cluster.template;
+    let fact = |value, source| Fact { value, source };
+    vec![
+        fact(FactValue::SvMovement { movement: sv }, column("SV Pre-Crash Movement", sv.label())),
+        fact(FactValue::CpMovement { movement: cp }, column("CP Pre-Crash Movement", cp.label())),
+        fact(FactValue::Approach { approach }, words(&format!("from the {side}"))),
+        fact(FactValue::CpSignal { signal: Signal::Red }, words("against a red light")),
+        fact(FactValue::SvSpeed { speed_mps: plan.ego_speed }, sv_speed),
+        fact(
+            FactValue::CpSpeed { speed_mps: plan.partner_speed },
+            assumed("no record gives it; the posted speed is taken"),
+        ),
+        fact(
+            FactValue::Contact { sv: record.sv_zones.clone(), cp: record.cp_zones.clone() },
+            column("SV Contact Area, CP Contact Area", "as ticked"),
+        ),
+    ]
+}
+
+/// What a search of the delay found, and the best delay. [s]
 fn tune_log(cluster: &Cluster, plan: &Plan, designed: f64) -> (TuneLog, f64) {
     let mut rng = Seed(7).child(&cluster.scenario_id).rng();
     let mut best = (0, f64::INFINITY, designed);
     let points: Vec<TunePoint> = (0..48)
         .map(|number| {
-            let near = number > 20;
-            let value = match number {
-                0 => designed,
-                _ if near => (best.2 + rng.range(-0.4, 0.4)).clamp(-3.0, 3.0),
-                _ => rng.range(-3.0, 3.0),
+            let (proposed_by, value) = match number {
+                0 => ("start", designed),
+                1..=20 => ("halton", rng.range(-3.0, 3.0)),
+                _ => ("local", (best.2 + rng.range(-0.4, 0.4)).clamp(-3.0, 3.0)),
             };
-            let gap = drive::least_gap(plan, value);
-            let refused: Vec<String> =
-                if number % 9 == 4 { vec!["the least gap comes at the very end".into()] } else { vec![] };
-            let objective = gap.value + if refused.is_empty() { 0.0 } else { 5.0 };
-            if refused.is_empty() && objective < best.1 - 1e-9 {
-                best = (number, objective, value);
+            let score = score(plan, value, number % 9 == 4);
+            if score.refused.is_empty() && score.objective < best.1 - 1e-9 {
+                best = (number, score.objective, value);
             }
-            let failed = gap.value < 2.0;
-            let findings = if failed { vec![FindingKind::NearMiss] } else { vec![] };
-            TunePoint {
-                number,
-                proposed_by: if number == 0 {
-                    "start"
-                } else if near {
-                    "local"
-                } else {
-                    "halton"
-                }
-                .into(),
-                values: vec![value, plan.ego_speed],
-                score: Score {
-                    objective,
-                    min_gap: Some(gap),
-                    depth_m: None,
-                    contact_mps: None,
-                    braking: None,
-                    findings,
-                    failed,
-                    refused,
-                },
-            }
+            TunePoint { number, proposed_by: proposed_by.into(), values: vec![value, plan.ego_speed], score }
         })
         .collect();
     let log = TuneLog {
@@ -342,30 +328,51 @@ fn tune_log(cluster: &Cluster, plan: &Plan, designed: f64) -> (TuneLog, f64) {
         scenario_id: cluster.scenario_id.clone(),
         searcher: "halton, then local".into(),
         seed: 7,
-        parameters: vec![
-            Parameter {
-                pointer: "/partners/0/start/arrival_gap_s".into(),
-                unit: "s".into(),
-                min: -3.0,
-                max: 3.0,
-                start: designed,
-                integer: false,
-                reason: "who comes first stays open within three seconds".into(),
-            },
-            Parameter {
-                pointer: "/ego/target_speed_mps".into(),
-                unit: "m/s".into(),
-                min: plan.ego_speed - 1.5,
-                max: plan.ego_speed + 1.5,
-                start: plan.ego_speed,
-                integer: false,
-                reason: "the speed in the record, give or take what its rounding hides".into(),
-            },
-        ],
+        parameters: parameters(plan, designed),
         points,
         best: best.0,
     };
     (log, best.2)
+}
+
+/// What a run with this delay is worth to the search.
+fn score(plan: &Plan, arrival_gap_s: f64, refused: bool) -> Score {
+    let gap = drive::least_gap(plan, arrival_gap_s);
+    let failed = gap.value < 2.0;
+    Score {
+        objective: gap.value + if refused { 5.0 } else { 0.0 },
+        min_gap: Some(gap),
+        depth_m: None,
+        contact_mps: None,
+        braking: None,
+        findings: if failed { vec![FindingKind::NearMiss] } else { vec![] },
+        failed,
+        refused: if refused { vec!["the least gap comes at the very end".into()] } else { vec![] },
+    }
+}
+
+/// What the search may change.
+fn parameters(plan: &Plan, designed: f64) -> Vec<Parameter> {
+    vec![
+        Parameter {
+            pointer: "/partners/0/start/arrival_gap_s".into(),
+            unit: "s".into(),
+            min: -3.0,
+            max: 3.0,
+            start: designed,
+            integer: false,
+            reason: "who comes first stays open within three seconds".into(),
+        },
+        Parameter {
+            pointer: "/ego/target_speed_mps".into(),
+            unit: "m/s".into(),
+            min: plan.ego_speed - 1.5,
+            max: plan.ego_speed + 1.5,
+            start: plan.ego_speed,
+            integer: false,
+            reason: "the speed in the record, give or take what its rounding hides".into(),
+        },
+    ]
 }
 
 fn run(cluster: &Cluster, plan: &Plan, arrival_gap_s: f64, folder: &str) -> RunView {
@@ -469,40 +476,13 @@ pub fn demo_of(count: usize) -> Demo {
     let templates = TEMPLATES.iter().flat_map(|&line| std::iter::repeat_n(template(line), line.4));
     let mut records: Vec<CrashRecord> =
         templates.enumerate().map(|(index, template)| record(index, template, seed)).collect();
-    let rejects = (0..5).map(|row| Reject {
-        file: "made-up.csv".into(),
-        row: 236 + row,
-        record: None,
-        reason: RejectReason::RedactedNarrative,
-    });
     let driven: Vec<CaseView> = selection.clusters.iter().map(|cluster| driven_case(cluster, &records)).collect();
     let mut cases: Vec<CaseRow> =
         driven.iter().zip(&selection.clusters).enumerate().map(|(i, (case, cluster))| row(case, cluster, i)).collect();
     cases.truncate(count);
     for position in DESIGNED..count {
-        let like = position % DESIGNED;
-        let mut cluster = selection.clusters[like].clone();
-        cluster.number = position + 1;
-        cluster.scenario_id = format!("{:04}-{}", position + 1, cluster.template.slug());
-        cluster.pick_index = records.len();
-        cluster.members = vec![records.len()];
-        let told = record(records.len(), cluster.template, seed);
-        cluster.pick = told.id.clone();
-        let place = selection.map[like * 7];
-        let spread = |by: usize| (position * by % 997) as f64 / 997.0 - 0.5;
-        let (x, y) = (place.x + spread(131), place.y + spread(389));
-        selection.map.push(MapPoint { record: records.len(), cluster: position, x, y });
-        let mut case = cases[like].clone();
-        case.scenario_id = cluster.scenario_id.clone();
-        case.cluster = Some(position);
-        case.records = cluster.members.clone();
-        case.told = case.told.map(|_| told.id.clone());
-        case.edited.clear();
-        cases.push(case);
-        records.push(told);
-        selection.clusters.push(cluster);
+        repeat(position, seed, &mut selection, &mut records, &mut cases);
     }
-    let usable = records.len();
     let suite = SuiteView {
         accounts: None,
         corpus: None,
@@ -517,27 +497,7 @@ pub fn demo_of(count: usize) -> Demo {
         seed: 7,
         sample: true,
         cases,
-        records: RecordSet {
-            files: vec![SourceFile {
-                name: "made-up.csv".into(),
-                edition: Edition::Second,
-                rows: usable + 5,
-                sha256: "5f2b51ca2fdc5baa31ec02e002f69aec0e48a8ad7cbf1c0a2f1fb1b8a1a3cf11".into(),
-            }],
-            usable: (0..usable).collect(),
-            untold: Default::default(),
-            rejects: rejects.collect(),
-            funnel: vec![
-                FunnelStep { name: "rows read".into(), remaining: usable + 5, lost: vec![] },
-                FunnelStep {
-                    name: "narrative can be read".into(),
-                    remaining: usable,
-                    lost: vec![(RejectReason::RedactedNarrative, 5)],
-                },
-                FunnelStep { name: "the profile expresses it".into(), remaining: usable, lost: vec![] },
-            ],
-            records,
-        },
+        records: record_set(records),
         selection,
         diagnostics: vec![Diagnostic::new(
             recrash_model::Severity::Warning,
@@ -547,6 +507,69 @@ pub fn demo_of(count: usize) -> Demo {
         )],
     };
     Demo { suite, driven }
+}
+
+/// Adds a scenario that repeats one of those designed, over a record of its own.
+fn repeat(
+    position: usize,
+    seed: Seed,
+    selection: &mut Selection,
+    records: &mut Vec<CrashRecord>,
+    cases: &mut Vec<CaseRow>,
+) {
+    let like = position % DESIGNED;
+    let mut cluster = selection.clusters[like].clone();
+    cluster.number = position + 1;
+    cluster.scenario_id = format!("{:04}-{}", position + 1, cluster.template.slug());
+    cluster.pick_index = records.len();
+    cluster.members = vec![records.len()];
+    let told = record(records.len(), cluster.template, seed);
+    cluster.pick = told.id.clone();
+    let place = selection.map[like * 7];
+    let spread = |by: usize| (position * by % 997) as f64 / 997.0 - 0.5;
+    let (x, y) = (place.x + spread(131), place.y + spread(389));
+    selection.map.push(MapPoint { record: records.len(), cluster: position, x, y });
+    let mut case = cases[like].clone();
+    case.scenario_id = cluster.scenario_id.clone();
+    case.cluster = Some(position);
+    case.records = cluster.members.clone();
+    case.told = case.told.map(|_| told.id.clone());
+    case.edited.clear();
+    cases.push(case);
+    records.push(told);
+    selection.clusters.push(cluster);
+}
+
+/// The made-up file: these records, and behind them five rows that cannot be read.
+fn record_set(records: Vec<CrashRecord>) -> RecordSet {
+    let usable = records.len();
+    let rejects = (0..5).map(|row| Reject {
+        file: "made-up.csv".into(),
+        row: 236 + row,
+        record: None,
+        reason: RejectReason::RedactedNarrative,
+    });
+    RecordSet {
+        files: vec![SourceFile {
+            name: "made-up.csv".into(),
+            edition: Edition::Second,
+            rows: usable + 5,
+            sha256: "5f2b51ca2fdc5baa31ec02e002f69aec0e48a8ad7cbf1c0a2f1fb1b8a1a3cf11".into(),
+        }],
+        usable: (0..usable).collect(),
+        untold: Default::default(),
+        rejects: rejects.collect(),
+        funnel: vec![
+            FunnelStep { name: "rows read".into(), remaining: usable + 5, lost: vec![] },
+            FunnelStep {
+                name: "narrative can be read".into(),
+                remaining: usable,
+                lost: vec![(RejectReason::RedactedNarrative, 5)],
+            },
+            FunnelStep { name: "the profile expresses it".into(), remaining: usable, lost: vec![] },
+        ],
+        records,
+    }
 }
 
 /// One scenario, driven.

@@ -104,72 +104,95 @@ fn head(case: Case, anchor: &str) -> Markup {
 /// Replay and plots of one or two runs, which the scripts fill: their names, which of them there are, and whether the
 /// reference driver's run is there to be seen beside the last.
 pub(super) fn stage(runs: &[(&str, String, bool)], reference: bool) -> Markup {
-    let there = |run: &str| runs.iter().any(|(name, _, there)| *name == run && *there);
-    let name = |run: &str| runs.iter().find(|(name, ..)| *name == run).map_or("", |(_, name, _)| name.as_str());
-    let (first, second) = (name("before"), name("after"));
-    let (is_first, is_second) = (there("before"), there("after"));
-    let mut modes: Vec<(&str, &str, bool)> =
-        runs.iter().map(|(run, name, there)| (*run, name.as_str(), *there)).collect();
-    modes.push(("both", "Side by side", is_first && is_second));
-    if reference {
-        modes.push(("reference", "Ego \u{201c}reference\u{201d}", true));
-    }
     html! {
         noscript { p.banner { "The replay and the plots need scripts. Every number is in the tables below." } }
         .stage {
             .replay role="group" aria-label="Replay, seen from above" {
-                .replay-bar {
-                    fieldset.segments {
-                        legend.hidden-text { "Which run" }
-                        @for (value, name, there) in modes {
-                            button type="button" data-mode=(value) aria-pressed="false" disabled[!there] title=[(!there).then_some("there is no such run")] { (name) }
-                        }
-                    }
-                    .grow {}
-                    fieldset.segments {
-                        legend.hidden-text { "Camera" }
-                        @for (value, name) in [("fit", "Fit"), ("follow", "Follow ego"), ("map", "Whole map")] {
-                            button type="button" data-camera=(value) aria-pressed=(value == "fit") { (name) }
-                        }
-                    }
-                    .zoom {
-                        button.small type="button" data-act="zoom-out" title="Zoom out ( \u{2212} )" aria-label="Zoom out" { (icon::minus()) }
-                        button.small type="button" data-act="zoom-in" title="Zoom in ( + )" aria-label="Zoom in" { (icon::plus()) }
-                    }
-                }
+                (replay_bar(runs, reference))
                 .views tabindex="0" role="img" aria-label="Top-down picture of the run; the plots and tables hold the same in numbers" {
                     @for (run, name, _) in runs { figure.view data-run=(run) hidden { canvas {} figcaption { (name) } } }
                     @if reference { figure.view data-run="reference" hidden { canvas {} figcaption { "Ego \u{201c}reference\u{201d}" } } }
                 }
-                .transport {
-                    button.small type="button" data-act="start" title="To the start ( Home )" aria-label="To the start" { (icon::to_start()) }
-                    button.small type="button" data-act="back" title="One step back ( \u{2190} )" aria-label="One step back" { (icon::step_back()) }
-                    button.play type="button" data-act="play" title="Play or pause ( Space )" aria-label="Play" { (icon::play_pause()) }
-                    button.small type="button" data-act="on" title="One step on ( \u{2192} )" aria-label="One step on" { (icon::step_on()) }
-                    button.small type="button" data-act="event-back" title="To the event before ( , )" aria-label="To the event before" { (icon::event_back()) }
-                    button.small type="button" data-act="event-on" title="To the next event ( . )" aria-label="To the next event" { (icon::event_on()) }
-                    .track {
-                        input.scrub type="range" min="0" max="1" step="0.1" value="0" aria-label="Time in the run";
-                        .marks role="group" aria-label="Events" {}
-                    }
-                    output.clock { "0.0 s" }
-                    button.small type="button" data-act="closest" title="To the least gap ( M )" aria-label="To the moment of the least gap" { (icon::closest()) }
-                    button.small type="button" data-act="loop" title="Repeat ( L )" aria-label="Repeat" aria-pressed="false" { (icon::repeat()) }
-                    label { span.hidden-text { "Speed" } select data-act="rate" {
-                        @for (value, name) in [("0.25", "\u{bc}\u{d7}"), ("0.5", "\u{bd}\u{d7}"), ("1", "1\u{d7}"), ("2", "2\u{d7}"), ("4", "4\u{d7}")] {
-                            option value=(value) selected[value == "1"] { (name) }
-                        }
-                    } }
+                (transport())
+            }
+            (plots(runs))
+        }
+    }
+}
+
+/// Whether a run is there, and its name.
+fn run_of<'a>(runs: &'a [(&str, String, bool)], run: &str) -> (bool, &'a str) {
+    runs.iter().find(|(name, ..)| *name == run).map_or((false, ""), |(_, name, there)| (*there, name.as_str()))
+}
+
+/// What is shown, and how near.
+fn replay_bar(runs: &[(&str, String, bool)], reference: bool) -> Markup {
+    let mut modes: Vec<(&str, &str, bool)> =
+        runs.iter().map(|(run, name, there)| (*run, name.as_str(), *there)).collect();
+    modes.push(("both", "Side by side", run_of(runs, "before").0 && run_of(runs, "after").0));
+    if reference {
+        modes.push(("reference", "Ego \u{201c}reference\u{201d}", true));
+    }
+    html! {
+        .replay-bar {
+            fieldset.segments {
+                legend.hidden-text { "Which run" }
+                @for (value, name, there) in modes {
+                    button type="button" data-mode=(value) aria-pressed="false" disabled[!there] title=[(!there).then_some("there is no such run")] { (name) }
                 }
             }
-            .plots aria-label="Values over time" role="group" {
-                .plot-key {
-                    @if is_second { span.key.solid { (uncapital(second)) } @if is_first { span.key.dashed { (uncapital(first)) } } }
-                    @else { span.key.solid { (uncapital(first)) } }
-                    span.key.ego { "ego" } span.key.partner { "partner" } }
-                @for (name, title, unit) in [("gap", "Gap to the partner", "m"), ("speed", "Speed", "m/s"), ("acceleration", "Acceleration", "m/s\u{b2}")] {
-                    figure.plot data-plot=(name) { figcaption { b { (title) } " " span.muted { (unit) } span.readout {} } svg role="img" aria-label={ (title) " over time" } {} }
+            .grow {}
+            fieldset.segments {
+                legend.hidden-text { "Camera" }
+                @for (value, name) in [("fit", "Fit"), ("follow", "Follow ego"), ("map", "Whole map")] {
+                    button type="button" data-camera=(value) aria-pressed=(value == "fit") { (name) }
                 }
+            }
+            .zoom {
+                button.small type="button" data-act="zoom-out" title="Zoom out ( \u{2212} )" aria-label="Zoom out" { (icon::minus()) }
+                button.small type="button" data-act="zoom-in" title="Zoom in ( + )" aria-label="Zoom in" { (icon::plus()) }
+            }
+        }
+    }
+}
+
+/// Play, steps, events and speed.
+fn transport() -> Markup {
+    html! {
+        .transport {
+            button.small type="button" data-act="start" title="To the start ( Home )" aria-label="To the start" { (icon::to_start()) }
+            button.small type="button" data-act="back" title="One step back ( \u{2190} )" aria-label="One step back" { (icon::step_back()) }
+            button.play type="button" data-act="play" title="Play or pause ( Space )" aria-label="Play" { (icon::play_pause()) }
+            button.small type="button" data-act="on" title="One step on ( \u{2192} )" aria-label="One step on" { (icon::step_on()) }
+            button.small type="button" data-act="event-back" title="To the event before ( , )" aria-label="To the event before" { (icon::event_back()) }
+            button.small type="button" data-act="event-on" title="To the next event ( . )" aria-label="To the next event" { (icon::event_on()) }
+            .track {
+                input.scrub type="range" min="0" max="1" step="0.1" value="0" aria-label="Time in the run";
+                .marks role="group" aria-label="Events" {}
+            }
+            output.clock { "0.0 s" }
+            button.small type="button" data-act="closest" title="To the least gap ( M )" aria-label="To the moment of the least gap" { (icon::closest()) }
+            button.small type="button" data-act="loop" title="Repeat ( L )" aria-label="Repeat" aria-pressed="false" { (icon::repeat()) }
+            label { span.hidden-text { "Speed" } select data-act="rate" {
+                @for (value, name) in [("0.25", "\u{bc}\u{d7}"), ("0.5", "\u{bd}\u{d7}"), ("1", "1\u{d7}"), ("2", "2\u{d7}"), ("4", "4\u{d7}")] {
+                    option value=(value) selected[value == "1"] { (name) }
+                }
+            } }
+        }
+    }
+}
+
+/// Gap, speed and acceleration over time.
+fn plots(runs: &[(&str, String, bool)]) -> Markup {
+    let ((is_first, first), (is_second, second)) = (run_of(runs, "before"), run_of(runs, "after"));
+    html! {
+        .plots aria-label="Values over time" role="group" {
+            .plot-key {
+                @if is_second { span.key.solid { (uncapital(second)) } @if is_first { span.key.dashed { (uncapital(first)) } } }
+                @else { span.key.solid { (uncapital(first)) } }
+                span.key.ego { "ego" } span.key.partner { "partner" } }
+            @for (name, title, unit) in [("gap", "Gap to the partner", "m"), ("speed", "Speed", "m/s"), ("acceleration", "Acceleration", "m/s\u{b2}")] {
+                figure.plot data-plot=(name) { figcaption { b { (title) } " " span.muted { (unit) } span.readout {} } svg role="img" aria-label={ (title) " over time" } {} }
             }
         }
     }

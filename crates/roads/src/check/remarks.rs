@@ -36,6 +36,11 @@ impl Remarks {
         self.list.push(Diagnostic::warning_at(code, path, message).with_hint(hint));
     }
 
+    /// How many of them are errors.
+    pub(super) fn errors(&self) -> usize {
+        self.list.iter().filter(|remark| remark.is_error()).count()
+    }
+
     /// Whether a number is finite and in range; says so where it is not.
     pub(super) fn number(&mut self, path: impl Display, value: f64, min: f64, max: f64, unit: &str) -> bool {
         if (min..=max).contains(&value) {

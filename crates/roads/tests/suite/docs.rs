@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-const SOURCES: [&str; 17] = [
+const SOURCES: [&str; 20] = [
     include_str!("../../src/check/graph.rs"),
     include_str!("../../src/curve.rs"),
     include_str!("../../src/graph/junction.rs"),
@@ -10,6 +10,8 @@ const SOURCES: [&str; 17] = [
     include_str!("../../src/graph/place.rs"),
     include_str!("../../src/graph/strips.rs"),
     include_str!("../../src/check/actors.rs"),
+    include_str!("../../src/check/actors/course.rs"),
+    include_str!("../../src/check/actors/numbers.rs"),
     include_str!("../../src/check/control.rs"),
     include_str!("../../src/check.rs"),
     include_str!("../../src/check/motion.rs"),
@@ -17,6 +19,7 @@ const SOURCES: [&str; 17] = [
     include_str!("../../src/check/obstacles.rs"),
     include_str!("../../src/check/places.rs"),
     include_str!("../../src/check/remarks.rs"),
+    include_str!("../../src/check/starts.rs"),
     include_str!("../../src/json_parts.rs"),
     include_str!("../../src/read.rs"),
     include_str!("../../src/paper_dialect.rs"),

@@ -2,6 +2,7 @@
 
 mod account;
 mod approach;
+mod collision;
 mod details;
 mod movement;
 mod of_account;
@@ -93,7 +94,7 @@ fn reading_of<'a>(record: &'a CrashRecord, sentences: &[Sentence<'a>]) -> Readin
     let relation = approach::relation(record, sentences);
     let partner_named = sentences.iter().any(|sentence| sentence.mentions.includes(Actor::Cp));
     let meets = partner_named && sentences.iter().any(|sentence| MEETING.is_match(sentence.text));
-    let collision = collision(record, sentences, relation.as_ref().map(|(relation, _)| *relation));
+    let collision = collision::read(record, sentences, relation.as_ref().map(|(relation, _)| *relation));
     Reading {
         record,
         tells: meets || relation.is_some(),
@@ -150,91 +151,6 @@ fn facts(record: &CrashRecord, sentences: &[Sentence], relation: Option<Relation
 /// Whether there are zones and all of them are of this sort.
 pub fn only(zones: &[ContactZone], sort: fn(ContactZone) -> bool) -> bool {
     !zones.is_empty() && zones.iter().all(|zone| sort(*zone))
-}
-
-static REAR_END: Pattern = Pattern::new(r"(?i)\brear[- ]?end(?:ed|ing|s)?\b");
-static REAR_ENDED_BY: Pattern = Pattern::new(r"(?i)^rear[- ]?ended(?: \w+)? by\b");
-static STRUCK_FROM_BEHIND: Pattern = Pattern::new(
-    r"(?i)\b(?:struck|hit|impacted|contacted|bumped) (?:from|in|on|at)(?: the| its)? (?:behind|rear|back)\b",
-);
-static HEAD_ON: Pattern = Pattern::new(r"(?i)\bhead[- ]on\b");
-static HIT_REAR_OF: Pattern = Pattern::new(
-    r"(?i)\b(?:contact\w*|struck|hit|collided|impacted|bumped)\b(?: with)?(?: into)? (?:the )?(?:rear|back)(?:[- ]end| bumper)?(?: bumper)?(?: of)?",
-);
-
-/// The kind of collision, where it is one of those a profile may exclude.
-fn collision(
-    record: &CrashRecord,
-    sentences: &[Sentence],
-    relation: Option<Relation>,
-) -> Option<(CollisionKind, FactSource)> {
-    let crosses = matches!(relation, Some(Relation::From(_) | Relation::Crossing | Relation::Oncoming));
-    let beside = matches!(relation, Some(Relation::Beside(_)));
-    for sentence in sentences {
-        if let Some(found) = HEAD_ON.find(sentence.text) {
-            return Some((CollisionKind::HeadOn, words(record, found.as_str())));
-        }
-        if let Some(found) = REAR_END.find(sentence.text) {
-            let passive = REAR_ENDED_BY.is_match(&sentence.text[found.start()..]);
-            let kind = match sentence.mentions.subject_at(found.start()) {
-                Some(Actor::Sv) if !passive && sentence.mentions.object_after(found.end()) == Some(Actor::Cp) => {
-                    CollisionKind::RearEndByEgo
-                }
-                _ => CollisionKind::RearEndOfEgo,
-            };
-            return Some((kind, words(record, found.as_str())));
-        }
-        if let Some(found) = STRUCK_FROM_BEHIND.find(sentence.text) {
-            let by_partner = sentence.mentions.object_after(found.end()) == Some(Actor::Cp);
-            let kind = match sentence.mentions.subject_at(found.start()) {
-                Some(Actor::Sv) => Some(CollisionKind::RearEndOfEgo),
-                _ if by_partner && !only(&record.sv_zones, ContactZone::is_front) => Some(CollisionKind::RearEndOfEgo),
-                Some(Actor::Cp) if !crosses && !beside => Some(CollisionKind::RearEndByEgo),
-                _ => None,
-            };
-            if let Some(kind) = kind {
-                return Some((kind, words(record, found.as_str())));
-            }
-        }
-        if let Some(found) = HIT_REAR_OF.find(sentence.text).filter(|_| !crosses && !beside) {
-            let object = sentence.mentions.object_after(found.end());
-            let kind = match (sentence.mentions.subject_at(found.start()), object) {
-                (Some(Actor::Cp), Some(Actor::Sv)) => Some(CollisionKind::RearEndOfEgo),
-                (Some(Actor::Sv), Some(Actor::Cp)) => Some(CollisionKind::RearEndByEgo),
-                _ => None,
-            };
-            if let Some(kind) = kind {
-                return Some((kind, words(record, found.as_str())));
-            }
-        }
-    }
-    let zones = || {
-        let text = format!("SV: {}; CP: {}", zone_list(&record.sv_zones), zone_list(&record.cp_zones));
-        column(record, "SV and CP Contact Area", text)
-    };
-    let (sv, cp) = (&record.sv_zones, &record.cp_zones);
-    let behind = relation == Some(Relation::Behind);
-    let (sv_did, cp_did) = (record.sv_movement.known(), record.cp_movement.known());
-    // Who comes backwards or out of a side street does not follow.
-    let follows = |did: Option<Movement>| {
-        !matches!(did, Some(Movement::Backing | Movement::ParkingManeuver | Movement::EnteringTraffic))
-    };
-    if record.partner.known().is_some() && !crosses && !beside && follows(sv_did) && follows(cp_did) {
-        if (behind && sv.is_empty()) || (only(sv, ContactZone::is_rear) && (behind || only(cp, ContactZone::is_front)))
-        {
-            return Some((CollisionKind::RearEndOfEgo, zones()));
-        }
-        if only(sv, ContactZone::is_front) && only(cp, ContactZone::is_rear) {
-            return Some((CollisionKind::RearEndByEgo, zones()));
-        }
-    }
-    let ahead = |did: Option<Movement>| {
-        use Movement::{CrossingIntoOpposingLane, Stopped, Straight, WrongWay};
-        matches!(did, Some(Straight | Stopped | WrongWay | CrossingIntoOpposingLane))
-    };
-    let fronts = |zones: &[ContactZone]| zones.is_empty() || zones.iter().any(|zone| zone.is_front());
-    let head_on = relation == Some(Relation::Oncoming) && ahead(sv_did) && ahead(cp_did) && fronts(sv) && fronts(cp);
-    head_on.then(|| (CollisionKind::HeadOn, zones()))
 }
 
 /// Whether a left turn, a right turn and going straight are told of an actor.
