@@ -452,11 +452,11 @@ impl Lexicon {
         })
     }
 
-    fn of(file: File) -> Self {
+    fn of(mut file: File) -> Self {
         let mut lexicon = Self {
             phrases: BTreeMap::new(),
             progress: BTreeMap::new(),
-            models: file.makes.models,
+            models: std::mem::take(&mut file.makes.models),
             reasons: lists(&file.reasons),
             features: lists(&file.features),
             places: lists(&file.places),
@@ -489,6 +489,15 @@ impl Lexicon {
             let part = part_of(name).expect("a part");
             words.iter().for_each(|phrase| lexicon.add(phrase, Meaning::Part(part)));
         }
+        lexicon.add_verbs(&file);
+        for phrases in lexicon.phrases.values_mut() {
+            phrases.sort_by_key(|phrase| std::cmp::Reverse(phrase.rest.len()));
+        }
+        lexicon
+    }
+
+    /// Verbs in all their forms, and the words that say how far another one came.
+    fn add_verbs(&mut self, file: &File) {
         for verb in &file.verb {
             let sense = sense_of(&verb.sense).expect("a sense");
             for phrase in verb.words.iter().flat_map(|line| spelled(line)) {
@@ -498,10 +507,10 @@ impl Lexicon {
                 for (word, form) in forms(&base, &file.irregular) {
                     let mut bent = words.clone();
                     bent[bends] = word;
-                    lexicon.add(&bent.join(" "), Meaning::Verb(sense, form));
+                    self.add(&bent.join(" "), Meaning::Verb(sense, form));
                 }
             }
-            verb.fixed.iter().for_each(|line| lexicon.add_all(line, Meaning::Verb(sense, Form::Past)));
+            verb.fixed.iter().for_each(|line| self.add_all(line, Meaning::Verb(sense, Form::Past)));
         }
         for (words, progress) in [
             (&file.begun.real, Progress::Real),
@@ -510,14 +519,10 @@ impl Lexicon {
         ] {
             for word in words {
                 for (form, _) in forms(word, &file.irregular) {
-                    lexicon.progress.insert(form, progress);
+                    self.progress.insert(form, progress);
                 }
             }
         }
-        for phrases in lexicon.phrases.values_mut() {
-            phrases.sort_by_key(|phrase| std::cmp::Reverse(phrase.rest.len()));
-        }
-        lexicon
     }
 
     /// All phrases of a line.

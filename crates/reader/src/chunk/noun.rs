@@ -220,18 +220,8 @@ impl Chunker<'_> {
         if let Some((meaning, length)) = head {
             return Lead::Head(meaning, length);
         }
-        // "the slowly moving van".
-        let adverb = self.text(at).ends_with("ly")
-            || matches!(self.text(at), "then" | "still" | "now" | "already" | "just" | "almost" | "once");
-        // "a by then stopped van".
-        if self.text(at) == "by" && matches!(self.text(at + 1), "then" | "now") && determined && self.adjective(at + 2)
-        {
-            draft.at += 2;
-            return Lead::On;
-        }
-        let intensifies = adverb && determined && self.adjective(at + 1);
-        if self.joins_adjectives(at, &draft.noun) || intensifies {
-            draft.at += 1;
+        if let Some(behind) = self.behind_adverb(draft) {
+            draft.at = behind;
             return Lead::On;
         }
         // "the larger piece of the pallet".
@@ -264,10 +254,28 @@ impl Chunker<'_> {
             draft.at += length;
             return Lead::On;
         }
-        // Words nobody knows, between an article and a noun: models of cars.
+        self.unknown_lead(draft)
+    }
+
+    /// "the slowly moving van", "a by then stopped van", "an unoccupied and parked van": the token behind the words before an adjective.
+    fn behind_adverb(&self, draft: &Draft) -> Option<usize> {
+        let (at, determined) = (draft.at, draft.noun.article != Article::None);
+        if self.text(at) == "by" && matches!(self.text(at + 1), "then" | "now") && determined && self.adjective(at + 2)
+        {
+            return Some(at + 2);
+        }
+        let adverb = self.text(at).ends_with("ly")
+            || matches!(self.text(at), "then" | "still" | "now" | "already" | "just" | "almost" | "once");
+        let intensifies = adverb && determined && self.adjective(at + 1);
+        (self.joins_adjectives(at, &draft.noun) || intensifies).then_some(at + 1)
+    }
+
+    /// Reads a word that nobody knows, between an article and a noun: models of cars.
+    fn unknown_lead(&self, draft: &mut Draft) -> Lead {
+        let at = draft.at;
         let token = &self.tokens[at];
         let unknown = (token.capital || token.kind != TokenKind::Word) && at > draft.first && draft.strange < 3;
-        let described = determined && draft.strange < 2 && self.may_describe(at);
+        let described = draft.noun.article != Article::None && draft.strange < 2 && self.may_describe(at);
         if !(unknown || described) || self.verb_stands(at) {
             return Lead::Ends;
         }

@@ -28,30 +28,16 @@ impl Draft {
 impl Chunker<'_> {
     /// A part of a vehicle, with whose it is.
     pub(super) fn piece(&self, first: usize) -> Option<(Piece, usize)> {
-        if self.loose_wheel(first).is_some() || self.loose_part(first).is_some() {
+        let determined = DETERMINERS.contains(&self.text(first));
+        if self.names_no_part(first, determined) {
             return None;
         }
-        let determined = DETERMINERS.contains(&self.text(first));
         let its = matches!(self.text(first), "its" | "their" | "his" | "her");
         let piece = Piece { parts: Vec::new(), door: false, mirror: false, open: false, owner: None, its };
-        // "its right lane" is a lane of the road.
-        if determined && self.lane(first + 1).is_some() {
-            return None;
-        }
         let own = usize::from(determined && self.text(first + 1) == "own");
         let mut draft = Draft { piece, at: first + usize::from(determined) + own, nouns: 0 };
-        // "a van, left of it, turned": where it was.
-        let aside = matches!(self.text(first), "left" | "right") && self.text(first + 1) == "of";
-        if aside && first > self.first && self.tokens[first - 1].kind == TokenKind::Mark {
-            return None;
-        }
-        // "at the west side of the curb": a place.
-        let of_street = first > self.first
-            && self.compass_word(first - 1)
-            && self.text(first) == "side"
-            && (first..first + 4).any(|at| self.text(at) == "curb");
         self.parts(first, &mut draft);
-        if of_street || draft.piece.parts.is_empty() || draft.at == first {
+        if draft.piece.parts.is_empty() || draft.at == first {
             return None;
         }
         if self.text(first) == "our" {
@@ -88,6 +74,24 @@ impl Chunker<'_> {
         self.side_told_behind(&mut draft);
         self.end_told_behind(&mut draft);
         (self.is_sure(first, &draft) && !self.is_side_of_road(&draft)).then_some((draft.piece, draft.at - first))
+    }
+
+    /// Whether words that may name a part name a thing by itself, a lane, where somebody is, or a place.
+    fn names_no_part(&self, first: usize, determined: bool) -> bool {
+        // "a van, left of it, turned": where it was.
+        let aside = matches!(self.text(first), "left" | "right") && self.text(first + 1) == "of";
+        // "at the west side of the curb": a place.
+        let of_street = || {
+            self.compass_word(first - 1)
+                && self.text(first) == "side"
+                && (first..first + 4).any(|at| self.text(at) == "curb")
+        };
+        self.loose_wheel(first).is_some()
+            || self.loose_part(first).is_some()
+            // "its right lane" is a lane of the road.
+            || determined && self.lane(first + 1).is_some()
+            || first > self.first
+                && (aside && self.tokens[first - 1].kind == TokenKind::Mark || of_street())
     }
 
     /// Reads the words of a part: "open rear passenger side door".

@@ -363,6 +363,7 @@ struct Course<'a> {
 }
 
 impl<'a> Course<'a> {
+    /// The frame that tells an act.
     fn frame_of(&self, fact: &ActFact) -> Option<&'a Frame> {
         self.reading.story.frames.get(fact.step as usize)
     }

@@ -48,10 +48,12 @@ struct Why<'a> {
 }
 
 impl Why<'_> {
+    /// Whether a reason was found.
     fn has(&self, reason: StandReason) -> bool {
         self.all.iter().any(|known| known.value == reason)
     }
 
+    /// Adds a reason, once.
     fn add(&mut self, reason: Fact<StandReason>) {
         if !self.has(reason.value) {
             self.all.push(reason);

@@ -48,6 +48,7 @@ pub(crate) fn scenario(account: &Account) -> Option<Fact<PrecrashScenario>> {
     Some(Fact::by_rule(value, "crash type, acts and control"))
 }
 
+/// Whether one of the two did this.
 fn either_did(account: &Account, partner: &Party, act: Act) -> bool {
     partner.did(act) || account.sv.did(act)
 }

@@ -65,6 +65,7 @@ struct Clues<'a> {
 }
 
 impl<'a> Clues<'a> {
+    /// What is known before the state is settled.
     fn of(reading: &'a Reading<'_>, account: &'a Account) -> Self {
         let speed = reading.record.sv_speed_mps;
         let column = reading.record.sv_movement.known();

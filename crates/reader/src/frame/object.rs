@@ -134,13 +134,27 @@ impl Parser<'_> {
         taken.who = Some(mention.actor);
         taken.with.clone_from(&mention.piece);
         (taken.passive, taken.end) = (true, placed.end);
-        // "was approached from behind by a van": who came from there.
-        let places: Vec<Relation> =
-            taken.relations.iter().filter(|(_, to)| to.is_none()).map(|(place, _)| *place).collect();
-        if passed && self.frames[frame].object == Some(SUBJECT) && mention.actor != SUBJECT {
-            places.into_iter().for_each(|place| self.note(mention.actor, place));
+        self.is_placed_by_doer(frame, mention, passed);
+        self.was_reduced(frame, done_to, carry);
+        // Nobody strikes itself: "the car behind it was struck by the car that followed".
+        if self.frames[frame].object == Some(mention.actor) && mention.actor != SUBJECT {
+            self.frames[frame].who = Some(self.world.twin(mention.actor));
         }
-        // "A stone kicked up by a truck struck it": the stone did.
+        self.followed_by(frame, mention, carry);
+        carry.governed |= carry.relative || carry.subject.is_some();
+    }
+
+    /// "was approached from behind by a van": who came from there.
+    fn is_placed_by_doer(&mut self, frame: usize, mention: &Mention, passed: bool) {
+        let taken = &self.frames[frame];
+        let of_subject = passed && taken.object == Some(SUBJECT) && mention.actor != SUBJECT;
+        let places: Vec<Relation> =
+            taken.relations.iter().filter(|(_, to)| of_subject && to.is_none()).map(|(place, _)| *place).collect();
+        places.into_iter().for_each(|place| self.note(mention.actor, place));
+    }
+
+    /// "A stone kicked up by a truck struck it": the stone did.
+    fn was_reduced(&self, frame: usize, done_to: bool, carry: &mut Carry) {
         let first = self.frames[frame].first;
         let be = self.tokens[first.saturating_sub(3)..first].iter().any(|token| {
             matches!(
@@ -148,26 +162,26 @@ impl Parser<'_> {
                 "was" | "were" | "is" | "are" | "been" | "being" | "be" | "got" | "and" | "," | "then"
             )
         });
-        let of_subject = carry.subject.as_ref().is_some_and(|subject| self.frames[frame].object == Some(subject.actor));
-        if done_to && !be && of_subject && carry.subject.as_ref().is_some_and(|subject| subject.end == first) {
+        let of_subject = carry
+            .subject
+            .as_ref()
+            .is_some_and(|subject| self.frames[frame].object == Some(subject.actor) && subject.end == first);
+        if done_to && !be && of_subject {
             (carry.reduced, carry.has_verb) = (true, false);
         }
-        // Nobody strikes itself: "the car behind it was struck by the car that followed".
-        if self.frames[frame].object == Some(mention.actor) && mention.actor != SUBJECT {
-            self.frames[frame].who = Some(self.world.twin(mention.actor));
-        }
+    }
+
+    /// "A ball, followed by a dog, rolled out": so did the dog.
+    fn followed_by(&mut self, frame: usize, mention: &Mention, carry: &mut Carry) {
         let (sense, object, first) = (self.frames[frame].sense, self.frames[frame].object, self.frames[frame].first);
-        if let (Sense::Act(Act::Follow), Some(followed)) = (sense, object) {
-            self.follows(Some(mention.actor), followed);
-            // "A ball, followed by a dog, rolled out": so did the dog.
-            let be = self.tokens[first.saturating_sub(2)..first]
-                .iter()
-                .any(|token| matches!(token.text.as_str(), "was" | "were" | "is" | "are" | "been" | "being"));
-            if !be && carry.subject.as_ref().is_some_and(|subject| subject.actor == followed) {
-                (carry.also, carry.has_verb) = (Some(mention.clone()), false);
-            }
+        let (Sense::Act(Act::Follow), Some(followed)) = (sense, object) else { return };
+        self.follows(Some(mention.actor), followed);
+        let be = self.tokens[first.saturating_sub(2)..first]
+            .iter()
+            .any(|token| matches!(token.text.as_str(), "was" | "were" | "is" | "are" | "been" | "being"));
+        if !be && carry.subject.as_ref().is_some_and(|subject| subject.actor == followed) {
+            (carry.also, carry.has_verb) = (Some(mention.clone()), false);
         }
-        carry.governed |= carry.relative || carry.subject.is_some();
     }
 
     /// "was struck while it stood there by a van": the passive verb that still waits for who did it.

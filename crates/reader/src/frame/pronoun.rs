@@ -19,66 +19,58 @@ impl Parser<'_> {
             return pushed;
         }
         let actor = self.of_sentence(matches!(word, "it" | "its" | "itself"), carry);
-        // "The van drifted over and hit its right side": nobody hits itself.
-        let hits = carry.frame.map(|frame| &self.frames[frame]).is_some_and(|frame| {
-            matches!(frame.sense, Sense::Contact | Sense::RearEnd | Sense::ReverseContact | Sense::Push)
-                && frame.who == Some(actor)
-                && frame.object.is_none()
-                && !carry.fresh
-                // "clipping the rear sensors with its mirror".
-                && !(frame.on.is_some() && carry.preposition == Some("with"))
-                // "was hit by its front bumper".
-                || frame.is_contact() && frame.passive && frame.object == Some(actor) && frame.who.is_none()
-        });
-        // "ran into the sedan, driving it forward": whom it struck.
-        let struck = self.frames.iter().rev().skip(1).find(|frame| {
-            frame.sentence == self.sentence && frame.is_contact() && frame.who == Some(actor) && frame.object.is_some()
-        });
-        let pushes = carry.frame.is_some_and(|frame| self.frames[frame].sense == Sense::Push);
-        if let (true, Some(Some(struck))) = (hits && pushes, struck.map(|frame| frame.object)) {
-            return struck;
-        }
-        // "cut off the van, causing it to brake": whom it did that to.
-        let causes = carry.frame.is_some_and(|frame| self.tokens[self.frames[frame].first].text.starts_with("caus"));
-        let done_to = self.frames.iter().rev().skip(1).find(|frame| {
-            frame.sentence == self.sentence && frame.who == Some(actor) && frame.happened() && frame.object.is_some()
-        });
-        if let (true, Some(Some(object))) = (hits && pushes && causes, done_to.map(|frame| frame.object)) {
-            return object;
-        }
-        // "came up behind that van and hit its rear": of whom it came up behind.
-        let came = self
-            .frames
-            .iter()
-            .rev()
-            .take(2)
-            .find(|frame| frame.sentence == self.sentence && frame.who == Some(actor) && !frame.is_contact());
-        let behind = came.and_then(|frame| {
-            frame.relations.iter().find_map(|(relation, to)| to.filter(|_| *relation == Relation::Behind))
-        });
-        if let Some(other) = behind.filter(|other| hits && *other != SUBJECT && *other != actor) {
-            return other;
-        }
-        // "A ladder fell off a truck and the AV ran over it": what fell.
-        let fell = self.frames.iter().rev().find(|frame| {
-            let thing = frame
-                .who
-                .and_then(|who| self.world.actors[who].kind)
-                .is_some_and(|kind| kind.group() == KindGroup::Object);
-            frame.sentence == self.sentence && thing && matches!(frame.act(), Some(Act::Fall | Act::Roll))
-        });
-        if let Some(thing) = fell.and_then(|frame| frame.who).filter(|_| hits && actor == SUBJECT) {
-            return thing;
-        }
-        match hits {
-            // "A motorcycle was eastbound when a van turned across it and clipped it": of a sentence without the subject vehicle.
-            true if actor != SUBJECT && self.world.actors[SUBJECT].sentence != Some(self.sentence) => {
-                carry.mains.iter().rev().copied().find(|before| *before != actor).unwrap_or(SUBJECT)
-            }
-            true if actor != SUBJECT => SUBJECT,
-            true => self.world.other().or(self.world.thing()).unwrap_or(actor),
-            false => actor,
-        }
+        let hits = carry.frame.is_some_and(|frame| hits_itself(&self.frames[frame], actor, carry));
+        if hits { self.met_by(actor, carry) } else { actor }
+    }
+
+    /// Whom somebody meets, of whom no more is said than "it": one that the sentence has told of.
+    fn met_by(&self, actor: Actor, carry: &Carry) -> Actor {
+        self.pushed_on(actor, carry)
+            .or_else(|| self.came_up_behind(actor))
+            .or_else(|| self.fell_before(actor))
+            .unwrap_or_else(|| {
+                // "A motorcycle was eastbound when a van turned across it and clipped it": of a sentence without the subject vehicle.
+                let apart = || self.world.actors[SUBJECT].sentence != Some(self.sentence);
+                match actor {
+                    SUBJECT => self.world.other().or(self.world.thing()).unwrap_or(actor),
+                    _ if apart() => {
+                        carry.mains.iter().rev().copied().find(|before| *before != actor).unwrap_or(SUBJECT)
+                    }
+                    _ => SUBJECT,
+                }
+            })
+    }
+
+    /// "ran into the sedan, driving it forward": whom it struck. "cut off the van, causing it to brake": whom it did that to.
+    fn pushed_on(&self, actor: Actor, carry: &Carry) -> Option<Actor> {
+        let push = carry.frame.map(|frame| &self.frames[frame]).filter(|frame| frame.sense == Sense::Push)?;
+        let causes = self.tokens[push.first].text.starts_with("caus");
+        let mut before = self.frames.iter().rev().skip(1);
+        let did =
+            |frame: &&Frame| frame.sentence == self.sentence && frame.who == Some(actor) && frame.object.is_some();
+        let struck = before.clone().find(|frame| did(frame) && frame.is_contact());
+        let done_to = || before.find(|frame| causes && did(frame) && frame.happened());
+        struck.or_else(done_to).and_then(|frame| frame.object)
+    }
+
+    /// "came up behind that van and hit its rear": of whom it came up behind.
+    fn came_up_behind(&self, actor: Actor) -> Option<Actor> {
+        let came = |frame: &&Frame| frame.sentence == self.sentence && frame.who == Some(actor) && !frame.is_contact();
+        let frame = self.frames.iter().rev().take(2).find(came)?;
+        let mut behind =
+            frame.relations.iter().filter(|(relation, _)| *relation == Relation::Behind).filter_map(|(_, to)| *to);
+        behind.next().filter(|other| *other != SUBJECT && *other != actor)
+    }
+
+    /// "A ladder fell off a truck and the AV ran over it": what fell.
+    fn fell_before(&self, actor: Actor) -> Option<Actor> {
+        let thing = |who: Actor| self.world.actors[who].kind.is_some_and(|kind| kind.group() == KindGroup::Object);
+        let fell = |frame: &&Frame| {
+            frame.sentence == self.sentence
+                && frame.who.is_some_and(thing)
+                && matches!(frame.act(), Some(Act::Fall | Act::Roll))
+        };
+        self.frames.iter().rev().find(fell).filter(|_| actor == SUBJECT)?.who
     }
 
     /// "struck the AV on its left rear corner": of whom it struck. "struck the AV with its front": of who strikes.
@@ -291,4 +283,16 @@ impl Parser<'_> {
             _ => SUBJECT,
         }
     }
+}
+
+/// "The van drifted over and hit its right side": nobody hits itself.
+fn hits_itself(frame: &Frame, actor: Actor, carry: &Carry) -> bool {
+    matches!(frame.sense, Sense::Contact | Sense::RearEnd | Sense::ReverseContact | Sense::Push)
+        && frame.who == Some(actor)
+        && frame.object.is_none()
+        && !carry.fresh
+        // "clipping the rear sensors with its mirror".
+        && !(frame.on.is_some() && carry.preposition == Some("with"))
+        // "was hit by its front bumper".
+        || frame.is_contact() && frame.passive && frame.object == Some(actor) && frame.who.is_none()
 }

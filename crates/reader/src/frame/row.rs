@@ -47,6 +47,12 @@ impl<'a> Spoken<'a> {
     }
 }
 
+/// Verbs of moving that may have somebody as their object.
+const MOVES: [&str; 22] = [
+    "drive", "drove", "driven", "driving", "move", "moved", "moving", "spin", "spun", "spinning", "slide", "slid",
+    "sliding", "roll", "rolled", "rolling", "turned", "turning", "rotated", "threw", "thrown", "whirled",
+];
+
 /// A crash is named so near before what it did to somebody: "the impact between those two vehicles rotated". [tokens]
 const IMPACT_WITHIN: usize = 7;
 
@@ -162,39 +168,10 @@ impl Parser<'_> {
     /// into the rear".
     pub(super) fn drives_another(&self, verb: &Spoken<'_>, carry: &Carry) -> bool {
         let Spoken { sense, form, all, at } = *verb;
-        let moves = matches!(
-            verb.word(self),
-            "drive"
-                | "drove"
-                | "driven"
-                | "driving"
-                | "move"
-                | "moved"
-                | "moving"
-                | "spin"
-                | "spun"
-                | "spinning"
-                | "slide"
-                | "slid"
-                | "sliding"
-                | "roll"
-                | "rolled"
-                | "rolling"
-                | "turned"
-                | "turning"
-                | "rotated"
-                | "threw"
-                | "thrown"
-                | "whirled"
-        );
-        // "struck the car and spun it", "rammed it and turned it around".
-        let struck = carry.row
-            && carry.frame.is_some_and(|frame| self.frames[frame].is_contact())
-            && matches!(all.get(at + 1).map(|placed| &placed.chunk), Some(Chunk::Pronoun))
-            && ["spin", "spun", "turn", "threw", "whirl", "rotat"].iter().any(|stem| verb.word(self).starts_with(stem));
-        if struck {
+        if self.whirls_whom_it_struck(verb, carry) {
             return true;
         }
+        let moves = MOVES.contains(&verb.word(self));
         if !moves || !single(&all[at]) && sense != Sense::Act(Act::Follow) {
             return false;
         }
@@ -204,12 +181,6 @@ impl Parser<'_> {
             })
         };
         let into = |placed: &Placed| matches!(placed.chunk, Chunk::Preposition("into" | "onto" | "against"));
-        let ahead = |placed: &Placed| {
-            matches!(
-                self.tokens[placed.first].text.as_str(),
-                "forward" | "backward" | "backwards" | "back" | "sideways"
-            )
-        };
         let part = behind().any(|placed| {
             matches!(placed.chunk, Chunk::Piece(_)) || matches!(&placed.chunk, Chunk::Noun(noun) if noun.subject)
         });
@@ -218,22 +189,24 @@ impl Parser<'_> {
             let by = behind().any(|placed| matches!(placed.chunk, Chunk::Preposition("by")));
             return !by && part && behind().any(into);
         }
-        let object = match all.get(at + 1).map(|placed| &placed.chunk) {
-            Some(Chunk::Pronoun) => true,
-            Some(Chunk::Noun(noun)) => {
-                noun.occupant.is_none() && (noun.subject || noun.kind.is_some_and(Kind::is_vehicle)) && !noun.several
-            }
-            _ => false,
+        let ahead = |placed: &Placed| {
+            matches!(
+                self.tokens[placed.first].text.as_str(),
+                "forward" | "backward" | "backwards" | "back" | "sideways"
+            )
         };
-        let other = carry.subject.as_ref().is_none_or(|subject| match all.get(at + 1).map(|placed| &placed.chunk) {
-            Some(Chunk::Noun(noun)) => !(noun.subject && subject.actor == SUBJECT),
-            _ => true,
-        });
-        object
-            && other
+        moves_vehicle(verb.next(), carry)
             && (behind().any(into) && part
                 || self.is_whirled_by_impact(verb)
                 || behind().any(ahead) && carry.subject.as_ref().is_none_or(|subject| subject.person.is_none()))
+    }
+
+    /// "struck the car and spun it", "rammed it and turned it around".
+    fn whirls_whom_it_struck(&self, verb: &Spoken<'_>, carry: &Carry) -> bool {
+        carry.row
+            && carry.frame.is_some_and(|frame| self.frames[frame].is_contact())
+            && matches!(verb.next(), Some(Chunk::Pronoun))
+            && ["spin", "spun", "turn", "threw", "whirl", "rotat"].iter().any(|stem| verb.word(self).starts_with(stem))
     }
 
     /// "The impact rotated the van", "the crash spun it": what does so is nobody who drives.
@@ -422,52 +395,37 @@ pub(super) fn names_doer(all: &[Placed], at: usize) -> bool {
     })
 }
 
+/// Whether a vehicle is the object of a verb of moving, and not who does it.
+fn moves_vehicle(object: Option<&Chunk>, carry: &Carry) -> bool {
+    match object {
+        Some(Chunk::Pronoun) => true,
+        Some(Chunk::Noun(noun)) => {
+            let vehicle = noun.subject || noun.kind.is_some_and(Kind::is_vehicle);
+            let itself = noun.subject && carry.subject.as_ref().is_some_and(|subject| subject.actor == SUBJECT);
+            noun.occupant.is_none() && vehicle && !noun.several && !itself
+        }
+        _ => false,
+    }
+}
+
 /// Where the words behind a noun say that it is, seen from the subject vehicle.
 pub(super) fn relation_behind(all: &[Placed], at: usize) -> Option<Relation> {
-    // "the vehicle traveling behind was unable to stop".
-    let mut further = at + 1;
-    let goes_on = |at: usize| match all.get(at).map(|p| &p.chunk) {
-        Some(Chunk::Verb(Sense::Act(Act::Follow) | Sense::Approach, Form::Ing) | Chunk::Relative | Chunk::Be) => true,
-        // "the car that was stopped behind it".
-        Some(Chunk::Verb(Sense::Act(Act::Stop | Act::Hold), _))
-            if matches!(all[at - 1].chunk, Chunk::Be | Chunk::Relative) =>
-        {
-            true
-        }
-        // "the vehicle waiting in front of it".
-        Some(Chunk::Verb(Sense::Act(Act::Hold), Form::Ing)) => matches!(all[at - 1].chunk, Chunk::Noun(_)),
-        // "The van stopped in front of it reversed": its verb stands behind.
-        Some(Chunk::Verb(Sense::Act(Act::Stop | Act::Hold) | Sense::Parked, Form::Past))
-            if matches!(all[at - 1].chunk, Chunk::Noun(_)) =>
-        {
-            another_finite(all, at)
-        }
-        // "the car that had been behind it".
-        Some(Chunk::Word) => matches!(all[at - 1].chunk, Chunk::Relative),
-        _ => false,
-    };
-    while further < at + 4 && goes_on(further) {
-        further += 1;
-    }
-    if let (Some(Chunk::Relation(relation @ (Relation::Behind | Relation::Ahead))), false) = (
-        all.get(further).map(|p| &p.chunk),
-        matches!(all.get(further + 1).map(|p| &p.chunk), Some(Chunk::Noun(noun)) if !noun.subject),
-    ) {
-        return Some(*relation);
-    }
-    // "the vehicle traveling next to it".
-    if let (true, Some(Chunk::Relation(relation)), Some(Chunk::Pronoun)) =
-        (further > at + 1, all.get(further).map(|p| &p.chunk), all.get(further + 1).map(|p| &p.chunk))
-    {
-        return Some(*relation);
+    let chunk = |at: usize| all.get(at).map(|placed| &placed.chunk);
+    let further = behind_stand(all, at);
+    match (chunk(further), chunk(further + 1)) {
+        (Some(Chunk::Relation(Relation::Behind | Relation::Ahead)), Some(Chunk::Noun(noun))) if !noun.subject => {}
+        (Some(Chunk::Relation(relation @ (Relation::Behind | Relation::Ahead))), _) => return Some(*relation),
+        // "the vehicle traveling next to it".
+        (Some(Chunk::Relation(relation)), Some(Chunk::Pronoun)) if further > at + 1 => return Some(*relation),
+        _ => {}
     }
     // "the vehicle that was following it", "the vehicle trailing it".
     if let (Chunk::Verb(Sense::Act(Act::Follow), Form::Ing), Some(Chunk::Pronoun)) =
-        (&all[further - 1].chunk, all.get(further).map(|p| &p.chunk))
+        (&all[further - 1].chunk, chunk(further))
     {
         return Some(Relation::Behind);
     }
-    match (all.get(at + 1).map(|p| &p.chunk)?, all.get(at + 2).map(|p| &p.chunk)) {
+    match (chunk(at + 1)?, chunk(at + 2)) {
         // "the vehicle coming the other way".
         (Chunk::Relation(Relation::Opposite), _) => Some(Relation::Opposite),
         (
@@ -478,8 +436,8 @@ pub(super) fn relation_behind(all: &[Placed], at: usize) -> Option<Relation> {
         (Chunk::Relation(relation), Some(Chunk::Pronoun)) => Some(*relation),
         // "the vehicle trailing the AV".
         (Chunk::Relative, Some(Chunk::Verb(Sense::Act(Act::Follow), Form::Past)))
-            if matches!(all.get(at + 3).map(|p| &p.chunk), Some(Chunk::Pronoun))
-                || matches!(all.get(at + 3).map(|p| &p.chunk), Some(Chunk::Noun(noun)) if noun.subject) =>
+            if matches!(chunk(at + 3), Some(Chunk::Pronoun))
+                || matches!(chunk(at + 3), Some(Chunk::Noun(noun)) if noun.subject) =>
         {
             Some(Relation::Behind)
         }
@@ -491,4 +449,39 @@ pub(super) fn relation_behind(all: &[Placed], at: usize) -> Option<Relation> {
         (Chunk::Relation(relation), Some(Chunk::Noun(noun))) if noun.subject => Some(*relation),
         _ => None,
     }
+}
+
+/// The chunk behind a noun, and behind the words that say only that it drives or stands: "the vehicle traveling behind was unable to stop",
+/// "the car that was stopped behind it".
+fn behind_stand(all: &[Placed], at: usize) -> usize {
+    let only_stands = |at: usize| {
+        let before = &all[at - 1].chunk;
+        match all.get(at).map(|placed| &placed.chunk) {
+            Some(Chunk::Verb(Sense::Act(Act::Follow) | Sense::Approach, Form::Ing) | Chunk::Relative | Chunk::Be) => {
+                true
+            }
+            // "the car that was stopped behind it".
+            Some(Chunk::Verb(Sense::Act(Act::Stop | Act::Hold), _))
+                if matches!(before, Chunk::Be | Chunk::Relative) =>
+            {
+                true
+            }
+            // "the vehicle waiting in front of it".
+            Some(Chunk::Verb(Sense::Act(Act::Hold), Form::Ing)) => matches!(before, Chunk::Noun(_)),
+            // "The van stopped in front of it reversed": its verb stands behind.
+            Some(Chunk::Verb(Sense::Act(Act::Stop | Act::Hold) | Sense::Parked, Form::Past))
+                if matches!(before, Chunk::Noun(_)) =>
+            {
+                another_finite(all, at)
+            }
+            // "the car that had been behind it".
+            Some(Chunk::Word) => matches!(before, Chunk::Relative),
+            _ => false,
+        }
+    };
+    let mut further = at + 1;
+    while further < at + 4 && only_stands(further) {
+        further += 1;
+    }
+    further
 }

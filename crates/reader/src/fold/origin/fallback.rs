@@ -116,6 +116,7 @@ struct Touch<'a> {
 }
 
 impl<'a> Touch<'a> {
+    /// What zones and columns tell of the two.
     fn of(reading: &Reading<'_>, account: &'a Account, partner: &'a Party) -> Self {
         Self {
             account,
