@@ -74,6 +74,7 @@ struct Row<'a> {
 }
 
 impl<'a> Row<'a> {
+    /// What is told of somebody who is in this state at the contact.
     fn of(party: &'a Party, state: ContactState) -> Self {
         let mut acts: Vec<&ActFact> = party.acts.iter().filter(|fact| !fact.after_contact).collect();
         acts.sort_by_key(|fact| fact.step);
