@@ -97,6 +97,22 @@ impl Member<'_> {
         }
     }
 
+    /// Begins what is due by what it sees, turns its parts, and notes whether it leaves, and how long its plan goes on.
+    fn decide(&mut self, sight: &Sight<'_>) {
+        let (step, was_present, parts) = (sight.step, self.progress.present, &mut self.parts);
+        self.programme.decide(&mut self.progress, self.number, sight, |part, to_rad, steps| {
+            if let Some((_, state, _)) = parts.get_mut(usize::from(part)) {
+                state.turn(to_rad, step, steps);
+            }
+        });
+        if was_present && !self.progress.present {
+            self.track.gone = Some(step);
+        }
+        if !self.programme.is_over(&self.progress) {
+            self.track.over = step + 1;
+        }
+    }
+
     /// One physics step: its end, in steps.
     fn advance(&mut self, moves: bool, end: f64) {
         let before = self.pose().0;
@@ -157,6 +173,7 @@ pub fn replay(scenario: &Scenario, handover: u32) -> Replay {
     Replay { ego, actors: tracks, parts, ends }
 }
 
+/// Takes everybody through the steps; where it ends before the last one, and why.
 fn run(members: &mut [Member<'_>], scenario: &Scenario, handover: u32, steps: u32) -> Option<(u32, String)> {
     let draft = scenario.draft();
     let partners = draft.partners.len();
@@ -164,62 +181,27 @@ fn run(members: &mut [Member<'_>], scenario: &Scenario, handover: u32, steps: u3
         let actor = usize::from(actor);
         (actor == 0 && step >= handover) || (1..=partners).contains(&actor)
     };
-    let nobody = Glimpse {
-        outline: OrientedBox::new(Pose::default(), 0.0, 0.0),
-        velocity: Vec2::default(),
-        acceleration_mps2: 0.0,
-        hit: false,
-        present: false,
-        begun: 0,
-    };
     for step in 0..=steps {
         let signals: Vec<Option<Aspect>> =
             draft.control.iter().map(|control| control.device.aspect(f64::from(step) * STEP_S)).collect();
-        let mut all = vec![nobody; 1 + partners + draft.actors.len()];
-        for member in members.iter_mut() {
-            member.note();
-            let velocity = member.pose().1;
-            let begun = member.progress.begun;
-            // What the recorded ego has begun stays so.
-            all[member.number] = Glimpse { begun, ..nobody };
-            if !unknown(step, member.number as u16) {
-                let acceleration_mps2 = member.progress.acceleration_mps2();
-                let outline = member.outline();
-                let present = member.progress.present;
-                let hit = member.hit;
-                all[member.number] = Glimpse { outline, velocity, acceleration_mps2, hit, present, begun };
-            }
-        }
+        members.iter_mut().for_each(Member::note);
+        let all = glimpses(members, 1 + partners + draft.actors.len(), |actor| unknown(step, actor));
         let sight = Sight { step, all: &all, signals: &signals };
         let waited_for = members.iter().filter_map(waits_for_ego).max();
         for member in members.iter_mut() {
-            if member.number == 0 && step >= handover {
-                if !matters(member, waited_for) {
-                    continue;
-                }
-                // Doors are opened by riders, whoever drives; but what waits for how it is driven is not known.
-                if !is_timed(member) {
-                    return Some((step, "an act of the recorded ego waits for how the ego is driven".to_owned()));
-                }
-            }
             let driven = member.number == 0 && step >= handover;
+            if driven && !matters(member, waited_for) {
+                continue;
+            }
+            // Doors are opened by riders, whoever drives; but what waits for how it is driven is not known.
+            if driven && !is_timed(member) {
+                return Some((step, "an act of the recorded ego waits for how the ego is driven".to_owned()));
+            }
             let asks = |member: &Member<'_>| if driven { None } else { asks_for(member, |actor| unknown(step, actor)) };
             if let Some(why) = asks(member) {
                 return Some((step, why));
             }
-            let was_present = member.progress.present;
-            let parts = &mut member.parts;
-            member.programme.decide(&mut member.progress, member.number, &sight, |part, to_rad, steps| {
-                if let Some((_, state, _)) = parts.get_mut(usize::from(part)) {
-                    state.turn(to_rad, step, steps);
-                }
-            });
-            if was_present && !member.progress.present {
-                member.track.gone = Some(step);
-            }
-            if !member.programme.is_over(&member.progress) {
-                member.track.over = step + 1;
-            }
+            member.decide(&sight);
             if let Some(why) = asks(member) {
                 return Some((step, why));
             }
@@ -231,6 +213,34 @@ fn run(members: &mut [Member<'_>], scenario: &Scenario, handover: u32, steps: u3
         }
     }
     None
+}
+
+/// What is seen of so many; of who is unknown only what it has begun: what the recorded ego has begun stays so.
+fn glimpses(members: &[Member<'_>], number: usize, unknown: impl Fn(u16) -> bool) -> Vec<Glimpse> {
+    let nobody = Glimpse {
+        outline: OrientedBox::new(Pose::default(), 0.0, 0.0),
+        velocity: Vec2::default(),
+        acceleration_mps2: 0.0,
+        hit: false,
+        present: false,
+        begun: 0,
+    };
+    let mut all = vec![nobody; number];
+    for member in members {
+        let begun = member.progress.begun;
+        all[member.number] = match unknown(member.number as u16) {
+            true => Glimpse { begun, ..nobody },
+            false => Glimpse {
+                outline: member.outline(),
+                velocity: member.pose().1,
+                acceleration_mps2: member.progress.acceleration_mps2(),
+                hit: member.hit,
+                present: member.progress.present,
+                begun,
+            },
+        };
+    }
+    all
 }
 
 /// Moves everybody through one step; who is pushed by whom, where two without the ego touch.

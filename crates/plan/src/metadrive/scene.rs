@@ -5,7 +5,7 @@ use crate::acts::{PartTrack, ReplayTrack, ego_stop_lines, replay};
 use recrash_model::geometry::{Pose, Vec2};
 use recrash_model::kinds::PartnerKind;
 use recrash_model::rollout::{EGO_ID, STEP_S};
-use recrash_model::scenario::{Device, MissionStop, PartKind};
+use recrash_model::scenario::{Device, MissionStop, PartKind, ScenarioDraft};
 use recrash_roads::{Centreline, Lane, LaneId, RoadPart, Scenario};
 use serde::Serialize;
 
@@ -106,23 +106,11 @@ impl Scene {
     /// What MetaDrive cannot hold.
     pub(super) fn of(scenario: &Scenario, handover: u32) -> Result<Option<Self>, String> {
         let draft = scenario.draft();
-        let network = draft.map.network().is_some();
-        let plain = !network
-            && draft.actors.is_empty()
-            && draft.control.is_empty()
-            && draft.ego.recorded.is_none()
-            && draft.ego.stops.is_empty()
-            && draft.ego.parts.is_empty()
-            && draft.ego.size.is_none();
-        if plain {
+        if is_plain(draft) {
             return Ok(None);
         }
-        if draft.ego.size.is_some() {
-            return Err("the ego is not as large as its kind".to_owned());
-        }
-        if draft.ego.parts.iter().any(|part| part.kind == PartKind::Trailer) {
-            return Err("the ego draws a trailer".to_owned());
-        }
+        let network = draft.map.network().is_some();
+        fits(draft)?;
         let names = LaneNames::of(scenario);
         if network && names.passes_twice() {
             return Err("the ego's way passes a road twice".to_owned());
@@ -137,25 +125,9 @@ impl Scene {
             planned(&names, &actor.id, (placement.kind, placement.length_m, placement.width_m), track)
         });
         let planned: Vec<Planned> = others.collect();
-        let first_actor = 1 + draft.partners.len();
-        let mut parts: Vec<PlannedPart> = replay
-            .parts
-            .into_iter()
-            .map(|track| {
-                let (owner, kind) = match track.owner {
-                    0 => (EGO_ID, scenario.ego().kind),
-                    number => (planned[number - first_actor].id.as_str(), planned[number - first_actor].kind),
-                };
-                part(owner, kind, track)
-            })
-            .collect();
+        let mut parts = parts(scenario, &planned, replay.parts);
         if recorded.is_none() {
-            parts.extend(draft.ego.parts.iter().map(|own| {
-                let attached = crate::acts::Attached { owner: 0, part: own.clone() };
-                let at = attached.pose(&crate::acts::PartState::resting(own, 0.0), Pose::default());
-                let states = vec![[at.position.x, at.position.y, at.heading]];
-                part(EGO_ID, scenario.ego().kind, PartTrack { owner: 0, part: own.clone(), states })
-            }));
+            parts.extend(resting_parts(scenario));
         }
         Ok(Some(Self {
             lanes: if network { lanes(&names) } else { Vec::new() },
@@ -170,6 +142,51 @@ impl Scene {
             ends: replay.ends,
         }))
     }
+}
+
+/// Whether a scenario has nothing that the paper could not have had.
+fn is_plain(draft: &ScenarioDraft) -> bool {
+    draft.map.network().is_none()
+        && draft.actors.is_empty()
+        && draft.control.is_empty()
+        && draft.ego.recorded.is_none()
+        && draft.ego.stops.is_empty()
+        && draft.ego.parts.is_empty()
+        && draft.ego.size.is_none()
+}
+
+/// Whether MetaDrive can hold the ego; else why not.
+fn fits(draft: &ScenarioDraft) -> Result<(), String> {
+    if draft.ego.size.is_some() {
+        return Err("the ego is not as large as its kind".to_owned());
+    }
+    if draft.ego.parts.iter().any(|part| part.kind == PartKind::Trailer) {
+        return Err("the ego draws a trailer".to_owned());
+    }
+    Ok(())
+}
+
+/// Boxes that belong to those with a plan, and to a recorded ego.
+fn parts(scenario: &Scenario, planned: &[Planned], tracks: Vec<PartTrack>) -> Vec<PlannedPart> {
+    let first_actor = 1 + scenario.draft().partners.len();
+    let of = |track: PartTrack| {
+        let (owner, kind) = match track.owner {
+            0 => (EGO_ID, scenario.ego().kind),
+            number => (planned[number - first_actor].id.as_str(), planned[number - first_actor].kind),
+        };
+        part(owner, kind, track)
+    };
+    tracks.into_iter().map(of).collect()
+}
+
+/// Those of an ego that nobody has recorded: at rest.
+fn resting_parts(scenario: &Scenario) -> impl Iterator<Item = PlannedPart> {
+    scenario.draft().ego.parts.iter().map(|own| {
+        let attached = crate::acts::Attached { owner: 0, part: own.clone() };
+        let at = attached.pose(&crate::acts::PartState::resting(own, 0.0), Pose::default());
+        let states = vec![[at.position.x, at.position.y, at.heading]];
+        part(EGO_ID, scenario.ego().kind, PartTrack { owner: 0, part: own.clone(), states })
+    })
 }
 
 /// The step at which a scenario hands over, where it has a recorded driver.

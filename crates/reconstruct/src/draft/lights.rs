@@ -97,6 +97,7 @@ impl Light<'_> {
         of_queue.filter(|_| self.is_ego).reduce(f64::min)
     }
 
+    /// Whether the partner reverses at the contact.
     fn partner_backs(&self) -> bool {
         self.told.cp.state == ContactState::Reversing
     }

@@ -6,6 +6,7 @@ use crate::ego::plan::{GOES_ON_S, ROLLS_S, ego_plan};
 use crate::ground::pieces::corner_m;
 use crate::ground::way::Ground;
 use crate::others::actors;
+use crate::pace::lead::Lead;
 use crate::pace::plain::{first_time, when};
 use crate::partner::plan::partner;
 use crate::told::crash::Told;
@@ -45,16 +46,7 @@ pub(crate) fn draft(account: &Account, told: &Told, staging: &Staging) -> Scenar
     let begins = actors.iter().find(|actor| actor.id == "cp").map(|actor| &actor.plan.start);
     map.roads[ground.own_road()].driveways.extend(begins.and_then(|begins| driveway(told, ground, begins)));
     let control = signals::devices(told, ground, &recorded, &actors);
-    let handover_s = match told.sv.state {
-        ContactState::Parked => None,
-        _ if told.stays_at_kerb() => None,
-        _ if let Some(lead) = &lead => Some(lead.handover_s(told.contact_s - HANDOVER_BEFORE_S)),
-        // While it still rolls.
-        ContactState::Stopped => {
-            Some((first_time(&recorded.acts) - ROLLS_S).clamp(0.0, told.contact_s - HANDOVER_BEFORE_S))
-        }
-        _ => Some((told.contact_s - HANDOVER_BEFORE_S).max(0.0)),
-    };
+    let handover_s = handover_s(told, lead.as_ref(), &recorded);
     let target_speed_mps = wanted_mps(told, &recorded);
     let id: String =
         account.incident.chars().filter(|c| c.is_ascii_alphanumeric() || matches!(c, '-' | '_')).take(40).collect();
@@ -88,6 +80,19 @@ pub(crate) fn draft(account: &Account, told: &Told, staging: &Staging) -> Scenar
         ..ScenarioDraft::default()
     };
     with_others(told, staging, draft)
+}
+
+/// When the system under test takes over; never from an ego that stays parked. [s]
+fn handover_s(told: &Told, lead: Option<&Lead>, recorded: &ActorPlan) -> Option<f64> {
+    let usual_s = told.contact_s - HANDOVER_BEFORE_S;
+    match told.sv.state {
+        ContactState::Parked => None,
+        _ if told.stays_at_kerb() => None,
+        _ if let Some(lead) = lead => Some(lead.handover_s(usual_s)),
+        // While it still rolls.
+        ContactState::Stopped => Some((first_time(&recorded.acts) - ROLLS_S).clamp(0.0, usual_s)),
+        _ => Some(usual_s.max(0.0)),
+    }
 }
 
 /// Surface, light and weather as they are told; of several weathers the first.

@@ -53,10 +53,12 @@ pub(crate) fn devices(told: &Told, ground: &Ground, ego: &ActorPlan, actors: &[A
     list
 }
 
+/// A signal that shows this.
 const fn light(program: Vec<Phase>) -> Device {
     Device::Signal { program, offset_s: 0.0 }
 }
 
+/// A device at the line of an arm.
 fn at(arm: &str, device: Device) -> Control {
     Control { at: arm.to_owned(), set_back_m: 0.0, lanes: Vec::new(), device }
 }

@@ -2,7 +2,7 @@
 
 use crate::ego::pace::ego_paces;
 use crate::ground::way::Ground;
-use crate::pace::lead::before;
+use crate::pace::lead::{Lead, before};
 use crate::pace::plain::{Pace, first_time, time_before, when};
 use crate::told::aside::Aside;
 use crate::told::crash::Told;
@@ -177,38 +177,16 @@ fn goes_out(aside: Aside, pace: &mut Pace) -> bool {
     true
 }
 
+/// What the ego does until the contact, and begins with, as a plan on this road.
 pub(crate) fn ego_plan(told: &Told, ground: &Ground, sv_s_m: f64, sv: Pose) -> ActorPlan {
     let (mut lead, mut pace) = ego_paces(told, ground, sv_s_m);
     let pulls_over = pulls_over(told, ground) && lead.is_none() && pace.driven_m > PULLS_OVER_M;
     if pulls_over {
-        let brakes_s = first_time(&pace.acts);
-        let braking_m = pace.driven_m - pace.speed_mps * brakes_s;
-        let way_m = PULLS_OVER_M.max(braking_m + AT_KERB_M);
-        let from_s = ((brakes_s - (way_m - braking_m) / pace.speed_mps) * 10.0).floor().max(0.0) / 10.0;
-        pace.acts.insert(0, when(from_s, Deed::Shift { to_t_m: ground.stands_m, over_m: way_m - AT_KERB_M }));
+        pace.acts.insert(0, shift_over(&pace, ground.stands_m));
     }
     let aside = ground.drift.or(told.sv_aside());
     if let Some(aside) = aside {
-        let by_m = (aside.to_t_m - aside.from_t_m).abs();
-        let least_m = if ground.drift.is_some() { DRIFTS_BY * by_m } else { 0.0 };
-        let shift = shift(told, aside, &pace, least_m);
-        let first = told.first_part_m(aside).filter(|_| ground.drift.is_none());
-        if let Some((lead, first_m)) = lead.as_mut().filter(|lead| !lead.reverses()).zip(first) {
-            lead.goes_aside(aside.from_t_m + first_m, FIRST_PART_OVER_M);
-        }
-        // It leaves its line before it stops for good.
-        let at = match told.sv.state.stands() {
-            true => 0,
-            // Acts begin in order.
-            false => {
-                let from_s = first_time(std::slice::from_ref(&shift));
-                pace.acts.partition_point(|act| first_time(std::slice::from_ref(act)) <= from_s)
-            }
-        };
-        match lead.as_mut().filter(|_| told.sv.state.stands()) {
-            Some(lead) => lead.shifts(aside.to_t_m, told.sv.ways_since_aside()),
-            None => pace.acts.insert(at, shift),
-        }
+        leave_line(told, (aside, ground.drift.is_some()), lead.as_mut(), &mut pace);
     }
     let reverses = told.sv.state == ContactState::Reversing;
     let mut pace = match lead {
@@ -219,35 +197,66 @@ pub(crate) fn ego_plan(told: &Told, ground: &Ground, sv_s_m: f64, sv: Pose) -> A
         Some(lead) => lead.then(pace),
         None => pace,
     };
-    let from_m =
-        aside.map_or(if pulls_over { 0.0 } else { ground.stands_m }, |aside| match goes_out(aside, &mut pace) {
-            true => aside.to_t_m,
-            false => aside.from_t_m,
-        });
-    let lane = |s_m: f64| Place::Lane {
-        road: ground.route[0].clone(),
-        lane: ground.lane,
-        along: Along::FromStart(s_m),
-        t_m: from_m,
-        heading_deg: 0.0,
+    let from_m = match aside {
+        Some(aside) if goes_out(aside, &mut pace) => aside.to_t_m,
+        Some(aside) => aside.from_t_m,
+        None if pulls_over => 0.0,
+        None => ground.stands_m,
     };
     if reverses {
         return along_line(told, pace, sv).0;
     }
-    let start_m = sv_s_m - pace.driven_m;
     let course = if pace.driven_m == 0.0 {
         Vec::new()
     } else {
         vec![Leg::Lanes { roads: ground.route.clone(), until_m: None, lane: None, against: false, reverse: false }]
     };
-    // Where it begins inside of the junction, it is on no lane of its first road.
-    let start = if start_m > ground.first_m() {
-        let pose = ground.pose(start_m, ground.drift.map_or(0.0, |drift| drift.from_t_m));
-        Place::at(pose.position.x, pose.position.y, pose.heading.to_degrees())
-    } else {
-        lane(start_m)
-    };
+    let start = start(ground, sv_s_m - pace.driven_m, from_m);
     ActorPlan { speed_mps: pace.speed_mps, course, acts: pace.acts, ..ActorPlan::standing(start) }
+}
+
+/// Where the ego begins, so far along its way, beside the middle of its lane by so much: inside of the junction it is on no lane of its first road.
+fn start(ground: &Ground, start_m: f64, from_m: f64) -> Place {
+    if start_m > ground.first_m() {
+        let pose = ground.pose(start_m, ground.drift.map_or(0.0, |drift| drift.from_t_m));
+        return Place::at(pose.position.x, pose.position.y, pose.heading.to_degrees());
+    }
+    Place::Lane {
+        road: ground.route[0].clone(),
+        lane: ground.lane,
+        along: Along::FromStart(start_m),
+        t_m: from_m,
+        heading_deg: 0.0,
+    }
+}
+
+/// The move of who pulls over, to so far to the right: it is there before it stands. [m]
+fn shift_over(pace: &Pace, to_t_m: f64) -> Act {
+    let brakes_s = first_time(&pace.acts);
+    let braking_m = pace.driven_m - pace.speed_mps * brakes_s;
+    let way_m = PULLS_OVER_M.max(braking_m + AT_KERB_M);
+    let from_s = ((brakes_s - (way_m - braking_m) / pace.speed_mps) * 10.0).floor().max(0.0) / 10.0;
+    when(from_s, Deed::Shift { to_t_m, over_m: way_m - AT_KERB_M })
+}
+
+/// Puts the ego's move out of its line among what it does: in two goes where it stands between, and before it stops for good. Who drifts to the edge
+/// of the road does so on more of its way.
+fn leave_line(told: &Told, (aside, drifts): (Aside, bool), mut lead: Option<&mut Lead>, pace: &mut Pace) {
+    let by_m = (aside.to_t_m - aside.from_t_m).abs();
+    let least_m = if drifts { DRIFTS_BY * by_m } else { 0.0 };
+    let shift = shift(told, aside, pace, least_m);
+    let first = told.first_part_m(aside).filter(|_| !drifts);
+    if let Some((lead, first_m)) = lead.as_mut().filter(|lead| !lead.reverses()).zip(first) {
+        lead.goes_aside(aside.from_t_m + first_m, FIRST_PART_OVER_M);
+    }
+    let stands = told.sv.state.stands();
+    if let Some(lead) = lead.filter(|_| stands) {
+        return lead.shifts(aside.to_t_m, told.sv.ways_since_aside());
+    }
+    // Acts begin in order.
+    let from_s = first_time(std::slice::from_ref(&shift));
+    let begun = pace.acts.partition_point(|act| first_time(std::slice::from_ref(act)) <= from_s);
+    pace.acts.insert(if stands { 0 } else { begun }, shift);
 }
 
 /// The plan of an ego that goes to its place by the line on which it is there, forwards or backwards; and where it begins.

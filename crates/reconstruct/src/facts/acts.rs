@@ -162,6 +162,15 @@ struct Other<'a> {
     beyond_m: f64,
 }
 
+/// So much to the left, as much towards a side; where none is told, to either.
+fn towards(side: Option<LeftRight>, left: f64) -> f64 {
+    match side {
+        Some(LeftRight::Left) => left,
+        Some(LeftRight::Right) => -left,
+        None => left.abs(),
+    }
+}
+
 impl Way<'_> {
     fn speed(&self, at: usize) -> f64 {
         self.states[at].speed()
@@ -262,56 +271,77 @@ impl Way<'_> {
         (from..=self.last()).find(|at| self.is_still(*at))
     }
 
-    fn begins(&self, doing: Doing, from: usize) -> Option<usize> {
-        let share = if doing.begun { BEGUN } else { 1.0 };
-        let towards = |value: f64| match doing.side {
-            Some(LeftRight::Left) => value,
-            Some(LeftRight::Right) => -value,
-            None => value.abs(),
-        };
-        // Seen along the road that it came by, until it turns off that: who straightens out does not go aside.
+    /// How far somebody goes to a side between two steps, or to any: seen along the road that it came by, until it turns off that. Who straightens
+    /// out does not go aside. [m]
+    fn aside_m(&self, side: Option<LeftRight>, at: usize, then: usize) -> f64 {
         let first = self.states[0].heading;
-        let along = |heading: f64| match math::wrap_angle(heading - first).abs() < CHANGES_LANES_RAD {
+        let (now, then) = (&self.states[at], &self.states[then]);
+        let along = match math::wrap_angle(now.heading - first).abs() < CHANGES_LANES_RAD {
             true => first,
-            false => heading,
+            false => now.heading,
         };
-        let aside = |at: usize, then: usize| {
-            let (now, then) = (&self.states[at], &self.states[then]);
-            towards(Vec2::from_heading(along(now.heading)).cross(then.position() - now.position()))
-        };
-        let turned = |at: usize, then: usize| {
-            towards(math::wrap_angle(self.states[then].heading - self.states[at].heading).to_degrees())
-        };
-        let slower = |at: usize, then: usize| self.speed(at) - self.speed(then);
+        towards(side, Vec2::from_heading(along).cross(then.position() - now.position()))
+    }
+
+    /// By how much it turns to a side between two steps, or to any. [deg]
+    fn turned_deg(&self, side: Option<LeftRight>, at: usize, then: usize) -> f64 {
+        towards(side, math::wrap_angle(self.states[then].heading - self.states[at].heading).to_degrees())
+    }
+
+    /// How much slower it is at the second of two steps. [m/s]
+    fn slower_mps(&self, at: usize, then: usize) -> f64 {
+        self.speed(at) - self.speed(then)
+    }
+
+    /// Whether it brakes hard, not long before a step or behind it.
+    fn brakes_hard(&self, at: usize) -> bool {
         let until_last = |at: usize| at.min(self.last());
-        let backs = || (from..=self.last()).find(|at| self.speed(*at) < -STANDS_MPS);
-        let changes = |at: usize, then: usize| {
-            let along = math::wrap_angle(self.states[then].heading - self.states[at].heading).abs() < CHANGES_LANES_RAD;
-            if along { aside(at, then) } else { 0.0 }
-        };
+        let mut around = at.saturating_sub(LONGEST)..until_last(at + LONGEST);
+        around.any(|at| self.slower_mps(at, until_last(at + BRAKES_OVER)) > BRAKES_BY_MPS)
+    }
+
+    /// When it changes lanes and then turns, from this step on: aside, before it has turned.
+    fn changes_lanes(&self, side: Option<LeftRight>, from: usize) -> Option<usize> {
+        self.comes_to(from, CHANGED_LANES_M, |at, then| {
+            let turned = math::wrap_angle(self.states[then].heading - self.states[at].heading).abs();
+            if turned < CHANGES_LANES_RAD { self.aside_m(side, at, then) } else { 0.0 }
+        })
+    }
+
+    /// When somebody that moved comes to a stand, from this step on.
+    fn halts(&self, from: usize) -> Option<usize> {
+        let halts = |at: &usize| self.is_still(*at) && !self.is_still(at - 1);
+        let came = |at: &usize| (0..*at).any(|before| self.speed(before).abs() > CAME_MPS);
+        (from.max(1)..=self.last()).find(|at| halts(at) && came(at))
+    }
+
+    /// When somebody that stands drives off, from this step on.
+    fn starts(&self, from: usize) -> Option<usize> {
+        let stood = self.stands(from)?;
+        (stood..self.last()).find(|at| self.is_still(*at) && !self.is_still(at + 1))
+    }
+
+    /// When a told act begins, from this step on.
+    fn begins(&self, doing: Doing, from: usize) -> Option<usize> {
         if doing.hard {
-            let around = |at: usize| at.saturating_sub(LONGEST)..until_last(at + LONGEST);
-            let brakes = |at: &usize| around(*at).any(|at| slower(at, until_last(at + BRAKES_OVER)) > BRAKES_BY_MPS);
-            return self.begins(Doing { hard: false, ..doing }, from).filter(brakes);
+            return self.begins(Doing { hard: false, ..doing }, from).filter(|at| self.brakes_hard(*at));
         }
+        let share = if doing.begun { BEGUN } else { 1.0 };
+        let aside = |at: usize, then: usize| self.aside_m(doing.side, at, then);
+        let turned = |at: usize, then: usize| self.turned_deg(doing.side, at, then);
+        let slower = |at: usize, then: usize| self.slower_mps(at, then);
+        let backs = || (from..=self.last()).find(|at| self.speed(*at) < -STANDS_MPS);
         match least(doing.act)? {
             Least::Aside(_) if doing.act == Act::LaneChange && doing.over && !doing.begun => {
-                self.comes_to(from, CHANGED_LANES_M, changes)
+                self.changes_lanes(doing.side, from)
             }
             Least::Speed(by) if by < 0.0 => self.comes_to(from, -by, slower),
             Least::Speed(by) => self.comes_to(from, by, |at, then| -slower(at, then)),
             Least::Stand => self.stands(from),
             // Who was coming to a stop has slowed for it.
             Least::Halt if doing.begun => self.comes_to(from, CHANGES_MPS, slower),
-            Least::Halt => {
-                let halts = |at: &usize| self.is_still(*at) && !self.is_still(at - 1);
-                let came = |at: &usize| (0..*at).any(|before| self.speed(before).abs() > CAME_MPS);
-                (from.max(1)..=self.last()).find(|at| halts(at) && came(at))
-            }
-            Least::Start => {
-                let stood = self.stands(from)?;
-                (stood..self.last()).find(|at| self.is_still(*at) && !self.is_still(at + 1))
-            }
+            Least::Halt => self.halts(from),
+            Least::Start => self.starts(from),
             Least::Back => backs(),
             Least::Aside(_)
                 if doing.within_lane && (from..=self.last()).any(|then| aside(from, then) > self.room_m) =>

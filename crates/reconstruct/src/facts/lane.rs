@@ -67,26 +67,19 @@ fn lane_at(
     };
     let road = network.road(network.lane(id).road);
     if let Some(strip) = layout::strip_of(word) {
-        return match is_on(network, road.part, strip) {
-            None => (CheckResult::CannotBeShown, "no such lane is drawn".to_owned()),
-            Some(true) => (CheckResult::Shown, lane_words(word).to_owned()),
-            Some(false) => (CheckResult::NotShown, "in another lane".to_owned()),
-        };
+        return on_strip(network, road.part, (word, strip));
     }
     let lanes = &road.lanes;
     let number = lanes.iter().position(|lane| *lane == id).unwrap_or(0);
     let way = network.lane(id);
     let (s_m, t_m) = way.local(first.position());
     let against = math::wrap_angle(way.heading(s_m) - first.heading).abs() > math::FRAC_PI_2;
-    // Who is narrow may be anywhere in it.
-    let drives = track.kind != PartnerKind::FixedObject;
     let of_ego = ego.id == track.id;
-    let most_m = if over.is_some() {
-        0.5 * way.width_at(s_m)
-    } else if drives {
-        KEEPS_M.max(0.5 * (way.width_at(s_m) - track.width_m))
-    } else {
-        way.width_at(s_m)
+    let most_m = match track.kind != PartnerKind::FixedObject {
+        _ if over.is_some() => 0.5 * way.width_at(s_m),
+        // Who is narrow may be anywhere in it.
+        true => KEEPS_M.max(0.5 * (way.width_at(s_m) - track.width_m)),
+        false => way.width_at(s_m),
     };
     if word != LaneWord::Opposing && (against || t_m.abs() > most_m) {
         let how = if against { "against its direction" } else { "beside its middle" };
@@ -115,6 +108,15 @@ fn lane_at(
     };
     let result = if shown { CheckResult::Shown } else { CheckResult::NotShown };
     (result, format!("lane {} of {}, from the left", number + 1, lanes.len()))
+}
+
+/// The same of what lies beside the driving lanes.
+fn on_strip(network: &RoadNetwork, part: RoadPart, (word, strip): (LaneWord, StripKind)) -> (CheckResult, String) {
+    match is_on(network, part, strip) {
+        None => (CheckResult::CannotBeShown, "no such lane is drawn".to_owned()),
+        Some(true) => (CheckResult::Shown, lane_words(word).to_owned()),
+        Some(false) => (CheckResult::NotShown, "in another lane".to_owned()),
+    }
 }
 
 /// Whether a driving lane is the told one; of its number and the last one's, 0 is the leftmost.

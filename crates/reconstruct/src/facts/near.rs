@@ -69,15 +69,18 @@ fn is_on_side(side: LeftRight, left_m: f64) -> bool {
 }
 
 impl<'a> View<'a> {
+    /// The two as they are told and seen.
     fn of(near: Near, ego: &'a ActorTrack, track: &'a ActorTrack, until: usize) -> Self {
         let came = ego.states[if near.after_turn { until } else { 0 }].heading;
         Self { near, ego, track, until, came, ahead: Vec2::from_heading(came) }
     }
 
+    /// Its state at a step, or its last one.
     fn state(&self, step: usize) -> &ActorState {
         &self.track.states[step.min(self.track.states.len() - 1)]
     }
 
+    /// How fast it is. [m/s]
     fn mps(&self, step: usize) -> f64 {
         self.state(step).velocity().length()
     }
@@ -88,10 +91,12 @@ impl<'a> View<'a> {
         (self.ahead.dot(way), self.ahead.cross(way))
     }
 
+    /// How far ahead of the ego it is. [m]
     fn ahead_m(&self, step: usize) -> f64 {
         self.seen(step).0
     }
 
+    /// How far to the left of the ego it is. [m]
     fn left_m(&self, step: usize) -> f64 {
         self.seen(step).1
     }
@@ -116,19 +121,23 @@ impl<'a> View<'a> {
         self.ahead.cross(self.state(self.until).position() - self.state(0).position())
     }
 
+    /// Whether it has come to another place when the two touch.
     fn drove(&self) -> bool {
         self.state(0).position().distance(self.state(self.until).position()) > DROVE_M
     }
 
+    /// Whether it was faster before than when the two touch.
     fn slowed(&self) -> bool {
         (0..self.until).any(|step| self.mps(step) > self.mps(self.until) + SLOWED_MPS)
     }
 
+    /// Whether it is near the ego.
     fn is_near(&self, step: usize) -> bool {
         let (ahead_m, left_m) = self.seen(step);
         math::hypot(ahead_m, left_m) - 0.5 * self.track.length_m < NEAR_M
     }
 
+    /// Whether it is a lane or two beside the ego.
     fn is_beside(&self, step: usize) -> bool {
         (0.35 * LANE_M..2.2 * LANE_M).contains(&self.left_m(step).abs())
     }

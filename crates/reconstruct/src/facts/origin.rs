@@ -43,75 +43,153 @@ pub(super) fn origin_words(told: &Told) -> String {
 
 /// Whether the partner comes from where it is told, seen from the ego when it sets out.
 pub(super) fn origin(told: &Told, ego: &ActorTrack, other: &ActorTrack, time_s: f64) -> (bool, String) {
-    let (ego_track, other_track) = (ego, other);
-    let state = told.cp.state;
-    let on_foot = is_on_foot(other.kind);
-    // Seen when it sets out.
-    let sets_out = other.states.iter().position(|state| state.velocity().length() > STANDS_MPS).unwrap_or(0);
-    let stands_then = sets_out > 0;
-    // Of who backs into a space, or had turned off: when it begins to back.
-    let backs = other.states.iter().position(|state| state.speed() < -STANDS_MPS);
-    let turned_off = matches!(told.cp.slants, Some(Slant::Stood { .. }));
-    let sets_out = backs.filter(|_| told.cp.backs_in || turned_off).unwrap_or(sets_out);
-    let beside_m = BESIDE_M + if turned_off { TURNED_OFF_M } else { 0.0 };
-    // Who rolls back in line overlaps the ego when it begins to.
-    let in_line = !told.backs_in_line() || backs.is_none_or(|step| overlaps(ego, other, step));
-    let met = &ego.states[((time_s * 10.0) as usize).min(ego.states.len() - 1)];
-    let (ego, other) = (&ego.states[sets_out.min(ego.states.len() - 1)], &other.states[sets_out]);
-    // Who comes out of a driveway is behind the place where an ego stands then.
-    let stands = told.sv.state.stands() && matches!(told.origin, Origin::Driveway { .. });
-    let behind_met = (other.position() - met.position()).dot(Vec2::from_heading(met.heading)) < 0.0;
-    let forward = Vec2::from_heading(ego.heading);
-    let way = other.position() - ego.position();
-    let (ahead, left) = (way.dot(forward), forward.cross(way));
-    let facing = math::wrap_angle(other.heading - ego.heading).to_degrees();
-    // Who reverses moves against where it faces.
-    let moves = if state == ContactState::Reversing {
-        math::wrap_angle((facing + 180.0).to_radians()).to_degrees()
-    } else {
-        facing
-    };
-    let to_met = math::wrap_angle(other.heading - met.heading).to_degrees();
-    let crosswise = |angle: f64| (30.0..150.0).contains(&angle.abs());
-    let on = |side: LeftRight, angle: f64| if side == LeftRight::Left { angle < 0.0 } else { angle > 0.0 };
-    let beside = |side: LeftRight| if side == LeftRight::Left { left > ASIDE_M } else { left < -ASIDE_M };
-    let same_way = match told.comes_across() {
-        true => (30.0..150.0).contains(&facing.abs()),
-        false => facing.abs() < 60.0 || state == ContactState::Reversing,
-    };
-    let shown = match told.origin {
-        Origin::Behind => {
-            let lane_m = if told.leaves_opposite() { OPPOSITE_M } else { BESIDE_M };
-            let in_line = !(told.begins_in_line() && told.is_beside_line(ego_track, other_track));
-            // Who backs towards the ego begins behind its rear.
-            let least_m = if told.backs_from_behind() { -0.5 * ego_track.length_m } else { BEHIND_MOST_M };
-            ahead < least_m && same_way && left.abs() < lane_m && in_line
+    let view = SetOut::of(told, ego, other, time_s);
+    let shown = view.comes_from_there() && (!told.drives_abreast() || is_abreast(ego, other, time_s));
+    let SetOut { ahead_m, left_m, facing_deg, .. } = view;
+    let along = if ahead_m < 0.0 { "behind" } else { "ahead" };
+    let aside = if left_m < 0.0 { "to the right" } else { "to the left" };
+    let (ahead_m, left_m) = (ahead_m.abs(), left_m.abs());
+    (shown, format!("{ahead_m:.0} m {along}, {left_m:.0} m {aside}, facing {facing_deg:.0} degrees"))
+}
+
+/// The partner, seen from the ego when it sets out.
+struct SetOut<'a> {
+    told: &'a Told,
+    ego: &'a ActorTrack,
+    other: &'a ActorTrack,
+    /// It stood when the story begins.
+    stood: bool,
+    /// When it begins to back. [steps]
+    backs: Option<usize>,
+    ahead_m: f64,
+    left_m: f64,
+    /// How it faces, by how the ego does. [deg]
+    facing_deg: f64,
+    /// The same, by how the ego does when they touch; and whether it is behind where the ego is then. [deg]
+    to_met_deg: f64,
+    behind_met: bool,
+}
+
+/// Whether somebody at this angle goes across. [deg]
+fn is_crosswise(angle_deg: f64) -> bool {
+    (30.0..150.0).contains(&angle_deg.abs())
+}
+
+/// Whether somebody at this angle who goes across comes from a side. [deg]
+fn comes_from(side: LeftRight, angle_deg: f64) -> bool {
+    if side == LeftRight::Left { angle_deg < 0.0 } else { angle_deg > 0.0 }
+}
+
+/// Whether the partner turned off before it stood and reversed.
+const fn turned_off(told: &Told) -> bool {
+    matches!(told.cp.slants, Some(Slant::Stood { .. }))
+}
+
+impl<'a> SetOut<'a> {
+    /// The two when the partner sets out, and where they touch.
+    fn of(told: &'a Told, ego: &'a ActorTrack, other: &'a ActorTrack, time_s: f64) -> Self {
+        let moves = other.states.iter().position(|state| state.velocity().length() > STANDS_MPS).unwrap_or(0);
+        // Of who backs into a space, or had turned off: when it begins to back.
+        let backs = other.states.iter().position(|state| state.speed() < -STANDS_MPS);
+        let sets_out = backs.filter(|_| told.cp.backs_in || turned_off(told)).unwrap_or(moves);
+        let met = &ego.states[((time_s * 10.0) as usize).min(ego.states.len() - 1)];
+        let (own, state) = (&ego.states[sets_out.min(ego.states.len() - 1)], &other.states[sets_out]);
+        let forward = Vec2::from_heading(own.heading);
+        let way = state.position() - own.position();
+        Self {
+            told,
+            ego,
+            other,
+            stood: moves > 0,
+            backs,
+            ahead_m: way.dot(forward),
+            left_m: forward.cross(way),
+            facing_deg: math::wrap_angle(state.heading - own.heading).to_degrees(),
+            to_met_deg: math::wrap_angle(state.heading - met.heading).to_degrees(),
+            behind_met: (state.position() - met.position()).dot(Vec2::from_heading(met.heading)) < 0.0,
         }
-        Origin::Ahead => {
-            let faces = same_way || on_foot && !told.comes_across() || state.stands();
-            ahead > -2.0 && faces && left.abs() < beside_m && in_line
+    }
+
+    /// Whether the partner reverses at the contact.
+    fn reverses(&self) -> bool {
+        self.told.cp.state == ContactState::Reversing
+    }
+
+    /// Whether it is on this side of the ego.
+    fn is_beside(&self, side: LeftRight) -> bool {
+        if side == LeftRight::Left { self.left_m > ASIDE_M } else { self.left_m < -ASIDE_M }
+    }
+
+    /// Whether it faces about as the ego does; across that, who comes across.
+    fn faces_that_way(&self) -> bool {
+        match self.told.comes_across() {
+            true => is_crosswise(self.facing_deg),
+            false => self.facing_deg.abs() < 60.0 || self.reverses(),
         }
-        Origin::Opposite => facing.abs() > 120.0 && (!told.comes_over || left > OVER_M),
-        Origin::Beside { side } => (facing.abs() < 60.0 || told.comes_across()) && same_way && beside(side),
-        // Over the road that the ego turns into it comes from a side of that.
-        Origin::Cross { side } if told.turns_over_walk().is_some() && on(side, to_met) => crosswise(to_met),
-        Origin::Cross { side } => crosswise(moves) && on(side, moves),
-        Origin::Stall { side } | Origin::Driveway { side } | Origin::Parked { side } | Origin::Sidewalk { side } => {
-            let out = crosswise(facing) || !matches!(told.origin, Origin::Stall { .. } | Origin::Driveway { .. });
-            let from_there = !(told.stood_beside() || told.backs_out())
-                || stands_then
-                    && left.abs() > OVER_M
-                    && out
-                    && (!told.comes_round || ahead < 0.0 || stands && behind_met);
-            side.is_none_or(beside) && from_there || state.stands()
+    }
+
+    /// Whether it comes from where it is told.
+    fn comes_from_there(&self) -> bool {
+        let (told, facing_deg) = (self.told, self.facing_deg);
+        match told.origin {
+            Origin::Behind => self.is_behind(),
+            Origin::Ahead => self.is_ahead(),
+            Origin::Opposite => facing_deg.abs() > 120.0 && (!told.comes_over || self.left_m > OVER_M),
+            Origin::Beside { side } => {
+                let along = facing_deg.abs() < 60.0 || told.comes_across();
+                along && self.faces_that_way() && self.is_beside(side)
+            }
+            // Over the road that the ego turns into it comes from a side of that.
+            Origin::Cross { side } if told.turns_over_walk().is_some() && comes_from(side, self.to_met_deg) => {
+                is_crosswise(self.to_met_deg)
+            }
+            Origin::Cross { side } => {
+                // Who reverses moves against where it faces.
+                let backwards = || math::wrap_angle((facing_deg + 180.0).to_radians()).to_degrees();
+                let moves_deg = if self.reverses() { backwards() } else { facing_deg };
+                is_crosswise(moves_deg) && comes_from(side, moves_deg)
+            }
+            Origin::Stall { side }
+            | Origin::Driveway { side }
+            | Origin::Parked { side }
+            | Origin::Sidewalk { side } => {
+                side.is_none_or(|side| self.is_beside(side)) && self.comes_out() || told.cp.state.stands()
+            }
+            Origin::Above => false,
         }
-        Origin::Above => false,
-    };
-    let shown = shown && (!told.drives_abreast() || is_abreast(ego_track, other_track, time_s));
-    let along = if ahead < 0.0 { "behind" } else { "ahead" };
-    let aside = if left < 0.0 { "to the right" } else { "to the left" };
-    let seen = format!("{:.0} m {along}, {:.0} m {aside}, facing {facing:.0} degrees", ahead.abs(), left.abs());
-    (shown, seen)
+    }
+
+    /// Whether it comes along behind the ego.
+    fn is_behind(&self) -> bool {
+        let told = self.told;
+        let lane_m = if told.leaves_opposite() { OPPOSITE_M } else { BESIDE_M };
+        let in_line = !(told.begins_in_line() && told.is_beside_line(self.ego, self.other));
+        // Who backs towards the ego begins behind its rear.
+        let least_m = if told.backs_from_behind() { -0.5 * self.ego.length_m } else { BEHIND_MOST_M };
+        self.ahead_m < least_m && self.faces_that_way() && self.left_m.abs() < lane_m && in_line
+    }
+
+    /// Whether it comes along, or stands, ahead of the ego.
+    fn is_ahead(&self) -> bool {
+        let told = self.told;
+        let on_foot = is_on_foot(self.other.kind) && !told.comes_across();
+        let faces = self.faces_that_way() || on_foot || told.cp.state.stands();
+        let beside_m = BESIDE_M + if turned_off(told) { TURNED_OFF_M } else { 0.0 };
+        // Who rolls back in line overlaps the ego when it begins to.
+        let in_line = !told.backs_in_line() || self.backs.is_none_or(|step| overlaps(self.ego, self.other, step));
+        self.ahead_m > -2.0 && faces && self.left_m.abs() < beside_m && in_line
+    }
+
+    /// Whether who stood beside the lanes, or backs out from there, comes out; who does so round the ego from behind it.
+    fn comes_out(&self) -> bool {
+        let told = self.told;
+        let driveway = matches!(told.origin, Origin::Driveway { .. });
+        let out = is_crosswise(self.facing_deg) || !(driveway || matches!(told.origin, Origin::Stall { .. }));
+        // Who comes out of a driveway is behind the place where an ego stands then.
+        let behind = self.ahead_m < 0.0 || told.sv.state.stands() && driveway && self.behind_met;
+        !(told.stood_beside() || told.backs_out())
+            || self.stood && self.left_m.abs() > OVER_M && out && (!told.comes_round || behind)
+    }
 }
 
 /// Who drives side by side does so this long before the contact, and is no farther ahead or behind than their lengths and this. [s, m]

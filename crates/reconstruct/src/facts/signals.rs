@@ -149,6 +149,7 @@ impl Met<'_> {
         self.passage.crossed_s.unwrap_or(self.contact_s)
     }
 
+    /// What the light shows then.
     fn shows(&self, at_s: f64) -> Option<Aspect> {
         self.device.aspect(at_s)
     }

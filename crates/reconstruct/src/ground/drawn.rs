@@ -16,44 +16,54 @@ use recrash_model::template::Movement;
 
 /// The road for an account.
 pub(crate) fn ground_for(told: &Told) -> Ground {
-    let crossing = matches!(told.origin, Origin::Cross { .. }) && !told.crosses_street() && !told.backs_across()
-        || told.sv.turning != Turning::No && told.sv.turning != Turning::Round
+    let turns = |turning: Turning| matches!(turning, Turning::Left | Turning::Right);
+    let crosses = matches!(told.origin, Origin::Cross { .. });
+    let crossing = crosses && !told.crosses_street() && !told.backs_across()
+        || turns(told.sv.turning)
         || told.cp.turning != Turning::No
             && !told.turns_round_in_street()
             && (!told.comes_off_drive() || told.crossed_near);
     // Aisles cross where somebody turns.
-    let turns = |turning: Turning| matches!(turning, Turning::Left | Turning::Right);
     let lot = matches!(told.place, PlaceKind::ParkingLot | PlaceKind::Garage | PlaceKind::Driveway | PlaceKind::Alley)
         && !turns(told.sv.turning)
-        && !(turns(told.cp.turning) && matches!(told.origin, Origin::Cross { .. }) && told.comes_along_lanes());
-    let controlled = told.is_controlled() && told.place != PlaceKind::Highway && !told.comes_off_drive();
-    // Who gives way to crossing traffic, or keeps a junction clear, is at one.
-    let at_one = [Role::Crosser, Role::Blocker, Role::Beyond].into_iter().any(|role| has(told, role));
-    let gives_way = told.place != PlaceKind::Highway && (at_one || told.crossed_near);
-    let entered = told.place != PlaceKind::Highway && (told.enters() || told.is_followed_in());
-    let to_come = told.waits_to_turn_left() && matches!(told.origin, Origin::Behind | Origin::Opposite);
-    let ahead = told.stops_before_junction() || to_come;
-    if (crossing || controlled || gives_way || entered || ahead) && !lot || told.place == PlaceKind::Intersection {
+        && !(turns(told.cp.turning) && crosses && told.comes_along_lanes());
+    if (crossing || told.is_at_crossing()) && !lot || told.place == PlaceKind::Intersection {
         let ground = junction(told, crossing);
-        let behind_m: &[f64] = match (told.edge, told.lies) {
-            (Some(_), _) => &BEHIND_ENTRY_M,
-            (None, Some(Lies::Edge)) => &[0.0],
-            // At the end of the space that it turned into, or across the entrance.
-            _ if told.stands_across() || told.at_entrance => &BEHIND_ENTRY_M,
-            _ => &[],
-        };
-        let turns = matches!(told.sv.turning, Turning::Left | Turning::Right);
-        return if turns && !behind_m.is_empty() { ground.at_entry(size_of(&told.sv).0, behind_m) } else { ground };
+        let behind_m = told.behind_entry_m();
+        let at_entry = turns(told.sv.turning) && !behind_m.is_empty();
+        return if at_entry { ground.at_entry(size_of(&told.sv).0, behind_m) } else { ground };
     }
+    street(told, lot)
+}
+
+/// A road that no other one crosses.
+fn street(told: &Told, lot: bool) -> Ground {
+    let highway = told.place == PlaceKind::Highway;
     let one_way = is_one_way(told);
     let one_sided = one_way || told.keeps_one_way() || told.edge == Some(LeftRight::Left) && !told.edge_is_median();
-    let oncoming = if one_sided || told.place == PlaceKind::Highway && !told.is_met_on_highway() { 0 } else { 1 };
-    let lane_m = if told.layout.narrow && told.edge.is_none() && told.place != PlaceKind::Highway {
-        NARROW_LANE_M
-    } else {
-        LANE_M
+    let oncoming = if one_sided || highway && !told.is_met_on_highway() { 0 } else { 1 };
+    let narrow = told.layout.narrow && told.edge.is_none() && !highway;
+    let lane_m = if narrow { NARROW_LANE_M } else { LANE_M };
+    let (right, left) = sides(told, lot, (oncoming, lane_m));
+    let lanes = right.iter().filter(|strip| strip.kind == StripKind::Driving).count();
+    let beside = right.iter().map(|strip| strip.kind).filter(|kind| *kind != StripKind::Driving).collect();
+    let lane = told_lane(told, lanes).unwrap_or(usual_lane(told, lanes, one_way));
+    let start = RoadStart::At { x_m: -APPROACH_M, y_m: (lane as f64 + 0.5) * lane_m, heading_deg: 0.0 };
+    let map = GraphMap {
+        roads: vec![straight("main", start, 2.0 * APPROACH_M, right, left)],
+        junctions: Vec::new(),
+        areas: Vec::new(),
     };
-    let (right, left) = match told.place {
+    let across = Across { lanes, lane, oncoming, beside, cross_lanes: lanes, lane_m };
+    let ground = with_way(map, vec!["main+".to_owned()], across, vec![APPROACH_M], false);
+    let at_kerb = (told.is_at_kerb() || told.sets_off_at_kerb()) && !lot && !highway && !one_way;
+    let ground = if at_kerb { ground.at_kerb() } else { ground };
+    ground.over_line(told)
+}
+
+/// Strips of such a road on the right and on the left, with so many lanes on the left, and so wide ones. [1, m]
+fn sides(told: &Told, lot: bool, (oncoming, lane_m): (usize, f64)) -> (Vec<Strip>, Vec<Strip>) {
+    match told.place {
         _ if let Some(side) = told.edge => beside_edge(told, side, lot, oncoming),
         PlaceKind::Highway => {
             let beside = told.beside_lanes(&[StripKind::Shoulder]);
@@ -69,23 +79,7 @@ pub(crate) fn ground_for(told: &Told) -> Ground {
             let beside = told.beside_lanes(&usual);
             (strips_of(lane_m, lanes_for(told, 2), &beside), strips_of(lane_m, oncoming, &beside))
         }
-    };
-    let lanes = right.iter().filter(|strip| strip.kind == StripKind::Driving).count();
-    let beside = right.iter().map(|strip| strip.kind).filter(|kind| *kind != StripKind::Driving).collect();
-    let usual = usual_lane(told, lanes, one_way);
-    let lane = told_lane(told, lanes).unwrap_or(usual);
-    let start = RoadStart::At { x_m: -APPROACH_M, y_m: (lane as f64 + 0.5) * lane_m, heading_deg: 0.0 };
-    let map = GraphMap {
-        roads: vec![straight("main", start, 2.0 * APPROACH_M, right, left)],
-        junctions: Vec::new(),
-        areas: Vec::new(),
-    };
-    let across = Across { lanes, lane, oncoming, beside, cross_lanes: lanes, lane_m };
-    let ground = with_way(map, vec!["main+".to_owned()], across, vec![APPROACH_M], false);
-    let at_kerb =
-        (told.is_at_kerb() || told.sets_off_at_kerb()) && !lot && told.place != PlaceKind::Highway && !one_way;
-    let ground = if at_kerb { ground.at_kerb() } else { ground };
-    ground.over_line(told)
+    }
 }
 
 /// From where the road begins that the ego turns into to the ego's front, where it meets what stands at the edge of that road, or across
@@ -116,6 +110,29 @@ fn beside_edge(told: &Told, side: LeftRight, lot: bool, oncoming: usize) -> (Vec
 }
 
 impl Told {
+    /// Whether the two meet at a junction, or before one, whether or not anybody crosses it or turns.
+    fn is_at_crossing(&self) -> bool {
+        let highway = self.place == PlaceKind::Highway;
+        let controlled = self.is_controlled() && !highway && !self.comes_off_drive();
+        // Who gives way to crossing traffic, or keeps a junction clear, is at one.
+        let at_one = [Role::Crosser, Role::Blocker, Role::Beyond].into_iter().any(|role| has(self, role));
+        let gives_way = !highway && (at_one || self.crossed_near);
+        let entered = !highway && (self.enters() || self.is_followed_in());
+        let to_come = self.waits_to_turn_left() && matches!(self.origin, Origin::Behind | Origin::Opposite);
+        controlled || gives_way || entered || self.stops_before_junction() || to_come
+    }
+
+    /// How far behind where the road begins that it turns into an ego meets what stands there, where it does. [m]
+    fn behind_entry_m(&self) -> &'static [f64] {
+        match (self.edge, self.lies) {
+            (Some(_), _) => &BEHIND_ENTRY_M,
+            (None, Some(Lies::Edge)) => &[0.0],
+            // At the end of the space that it turned into, or across the entrance.
+            _ if self.stands_across() || self.at_entrance => &BEHIND_ENTRY_M,
+            _ => &[],
+        }
+    }
+
     /// Whether the partner turns round on a street along which both go, or out of its kerb: it needs no road that crosses.
     fn turns_round_in_street(&self) -> bool {
         let crosses = matches!(self.origin, Origin::Cross { .. } | Origin::Opposite);

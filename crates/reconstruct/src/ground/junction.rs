@@ -84,6 +84,7 @@ fn usual_strips(told: &Told, aisles: bool, at_kerb: bool) -> &'static [StripKind
 }
 
 impl<'a> Drawn<'a> {
+    /// What is drawn for an account.
     fn of(told: &'a Told, at_kerb: bool, one_way: bool) -> Self {
         let lot = matches!(told.place, PlaceKind::ParkingLot | PlaceKind::Garage);
         let aisles = lot && told.layout.off_street.is_none();
@@ -145,6 +146,7 @@ impl<'a> Drawn<'a> {
         straight(name, start, APPROACH_M, away, towards)
     }
 
+    /// The map of all of its roads.
     fn map(&self) -> GraphMap {
         // The first road of a map has lanes in its own direction.
         let along = if self.one_sided { [(AHEAD, 0.0), (OWN, 180.0)] } else { [(OWN, 180.0), (AHEAD, 0.0)] };

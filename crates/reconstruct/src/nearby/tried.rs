@@ -110,6 +110,7 @@ impl<'a> Scene<'a> {
         list
     }
 
+    /// Ahead in the ego's lane, or in one beside that.
     fn ahead(&self, near: Near, half_m: f64) -> Vec<Way> {
         let mut list: Vec<Way> = self.loses(half_m).into_iter().collect();
         if near.does == Does::Drives && self.ego_moves_off() {

@@ -43,42 +43,20 @@ pub(super) const LEAST_BEFORE_M: f64 = 1.0;
 
 /// The same to where it touches, or begins its last bend.
 pub(super) fn line_to(told: &Told, staging: &Staging, pace: Pace, at: impl Fn(Pose) -> Place) -> (ActorPlan, Pose) {
-    let cp = &told.cp;
-    let ground = &staging.ground;
-    if let Some((begin_m, beside_m)) = staging.cp_follows_m.map(|(at_m, beside_m)| (at_m - pace.driven_m, beside_m))
-        && (0.0..ground.first_m()).contains(&begin_m)
-    {
-        let legs =
-            vec![Leg::Lanes { roads: ground.route.clone(), until_m: None, lane: None, against: false, reverse: false }];
-        let begin = ground.pose(begin_m, beside_m);
-        let plan =
-            ActorPlan { speed_mps: pace.speed_mps, course: legs, acts: pace.acts, ..ActorPlan::standing(at(begin)) };
-        return (plan, begin);
+    if let Some(begin) = follows_from(staging, &pace) {
+        let roads = staging.ground.route.clone();
+        let course = vec![Leg::Lanes { roads, until_m: None, lane: None, against: false, reverse: false }];
+        return (plan(pace, course, at(begin)), begin);
     }
-    let reverse = cp.state == ContactState::Reversing;
-    let gear = if reverse { -1.0 } else { 1.0 };
+    let cp = &told.cp;
     let arm_m = recrash_roads::arm_m(cp.kind, size_of(cp).0);
-    let motion = |heading: f64| Vec2::from_heading(heading) * gear;
+    let reverse = cp.state == ContactState::Reversing;
     // What comes off the vehicle ahead does not slow for the end of its course before it has come off.
     let fastest_mps = if told.dropped.is_some() { pace.speed_mps } else { cp.speed_mps };
-    let beyond =
-        Pose { position: staging.cp.position + motion(staging.cp.heading) * beyond_m(fastest_mps), ..staging.cp };
-    let length = |start: Pose| -> Option<f64> {
-        let mut course = Course::begin(arm_m);
-        course.curve(start, staging.cp, reverse).then(|| course.length_m())
-    };
-    // As far back as makes the line as long as what is driven.
-    let fitted = |aside: bool, over_y_m: Option<f64>| -> Option<Pose> {
-        let mut back_m = pace.driven_m;
-        for _ in 0..30 {
-            let found = length(start(told, staging, back_m, (aside, over_y_m), motion))?;
-            back_m = (back_m + pace.driven_m - found).max(0.1);
-        }
-        let begin = start(told, staging, back_m, (aside, over_y_m), motion);
-        length(begin).is_some_and(|found| (found - pace.driven_m).abs() < 0.02).then_some(begin)
-    };
+    let on = motion(told, staging.cp.heading) * beyond_m(fastest_mps);
+    let beyond = Pose { position: staging.cp.position + on, ..staging.cp };
     // Who drives over a line comes from there, where it can.
-    let over = beside::over_y_m(told, staging).and_then(|y_m| fitted(true, Some(y_m)));
+    let over = beside::over_y_m(told, staging).and_then(|y_m| fitted(told, staging, &pace, (true, Some(y_m))));
     let on_lanes = || {
         with_its_turn(told, staging, &pace, arm_m)
             .or_else(|| lateral::drew_in(told, staging, &pace, arm_m))
@@ -88,40 +66,72 @@ pub(super) fn line_to(told: &Told, staging: &Staging, pace: Pace, at: impl Fn(Po
             .or_else(|| turns::turns_in(told, staging, &pace, arm_m))
             .or_else(|| lanes::from_lane(told, staging, &pace, arm_m))
     };
+    let leg = |pose: Pose| Leg::Curve { to: at(pose), reverse };
     if let Some((begin, mut course)) = if over.is_some() { None } else { on_lanes() } {
         course.push(beyond);
-        let course = course.into_iter().map(|pose| Leg::Curve { to: at(pose), reverse }).collect();
-        let plan = ActorPlan { speed_mps: pace.speed_mps, course, acts: pace.acts, ..ActorPlan::standing(at(begin)) };
-        return (plan, begin);
+        let course = course.into_iter().map(leg).collect();
+        return (plan(pace, course, at(begin)), begin);
     }
-    let straight = || Pose { position: staging.cp.position - motion(staging.cp.heading) * pace.driven_m, ..staging.cp };
-    // What is long cannot whip round: it comes straight.
-    let length_m = size_of(cp).0;
-    let whips = |begin: &Pose| {
-        let mut course = Course::begin(arm_m);
-        let long = reverse && length_m > LONG_M;
-        long && course.curve(*begin, staging.cp, reverse) && is_tight(&course, TIGHTEST_LENGTHS * length_m)
-    };
-    let fitted = over.or_else(|| fitted(true, None)).or_else(|| fitted(false, None)).filter(|begin| !whips(begin));
+    let back = motion(told, staging.cp.heading) * pace.driven_m;
+    let straight = || Pose { position: staging.cp.position - back, ..staging.cp };
+    let fitted = over
+        .or_else(|| fitted(told, staging, &pace, (true, None)))
+        .or_else(|| fitted(told, staging, &pace, (false, None)))
+        .filter(|begin| !whips(told, *begin, staging.cp));
     let begin = fitted.unwrap_or_else(straight);
-    let course = vec![Leg::Curve { to: at(staging.cp), reverse }, Leg::Curve { to: at(beyond), reverse }];
-    let plan = ActorPlan { speed_mps: pace.speed_mps, course, acts: pace.acts, ..ActorPlan::standing(at(begin)) };
-    (plan, begin)
+    (plan(pace, vec![leg(staging.cp), leg(beyond)], at(begin)), begin)
+}
+
+/// The plan of who has this pace, begins there and goes by these legs.
+fn plan(pace: Pace, course: Vec<Leg>, begin: Place) -> ActorPlan {
+    ActorPlan { speed_mps: pace.speed_mps, course, acts: pace.acts, ..ActorPlan::standing(begin) }
+}
+
+/// Where a partner begins that follows the ego's way, where that is on its first road.
+fn follows_from(staging: &Staging, pace: &Pace) -> Option<Pose> {
+    let (at_m, beside_m) = staging.cp_follows_m?;
+    let begin_m = at_m - pace.driven_m;
+    (0.0..staging.ground.first_m()).contains(&begin_m).then(|| staging.ground.pose(begin_m, beside_m))
+}
+
+/// Where a partner that faces so moves to, one metre on.
+fn motion(told: &Told, heading: f64) -> Vec2 {
+    let gear = if told.cp.state == ContactState::Reversing { -1.0 } else { 1.0 };
+    Vec2::from_heading(heading) * gear
+}
+
+/// The curve from a pose to another one by which the partner drives, where it can.
+fn curve(told: &Told, from: Pose, to: Pose) -> Option<Course> {
+    let mut course = Course::begin(recrash_roads::arm_m(told.cp.kind, size_of(&told.cp).0));
+    course.curve(from, to, told.cp.state == ContactState::Reversing).then_some(course)
+}
+
+/// Where the partner begins on a line that is as long as what it drives: as far back as makes it so.
+fn fitted(told: &Told, staging: &Staging, pace: &Pace, from: (bool, Option<f64>)) -> Option<Pose> {
+    let length = |begin: Pose| curve(told, begin, staging.cp).map(|course| course.length_m());
+    let mut back_m = pace.driven_m;
+    for _ in 0..30 {
+        let found = length(start(told, staging, back_m, from))?;
+        back_m = (back_m + pace.driven_m - found).max(0.1);
+    }
+    let begin = start(told, staging, back_m, from);
+    length(begin).is_some_and(|found| (found - pace.driven_m).abs() < 0.02).then_some(begin)
+}
+
+/// Whether what is long would whip round in reverse: it cannot, and comes straight.
+fn whips(told: &Told, begin: Pose, to: Pose) -> bool {
+    let length_m = size_of(&told.cp).0;
+    let long = told.cp.state == ContactState::Reversing && length_m > LONG_M;
+    long && curve(told, begin, to).is_some_and(|course| is_tight(&course, TIGHTEST_LENGTHS * length_m))
 }
 
 /// What is longer than this does not whip round in reverse. [m]
 const LONG_M: f64 = 6.0;
 
 /// Where the partner begins, this far back, headed as it came: in the lane it comes from, or so that an arc leads to the contact.
-fn start(
-    told: &Told,
-    staging: &Staging,
-    back_m: f64,
-    (aside, over_y_m): (bool, Option<f64>),
-    motion: impl Fn(f64) -> Vec2,
-) -> Pose {
+fn start(told: &Told, staging: &Staging, back_m: f64, (aside, over_y_m): (bool, Option<f64>)) -> Pose {
     let came = staging.cp_came;
-    let way = motion(came);
+    let way = motion(told, came);
     let turn = math::wrap_angle(staging.cp.heading - came);
     let mut position = staging.cp.position - way * back_m;
     let turns = told.cp.turning != Turning::No && turn.abs() > 0.1;

@@ -12,48 +12,12 @@ use recrash_model::zones::ContactZone;
 
 /// What is told of somebody until the contact that can be seen, in order.
 pub(super) fn told(party: &Party, state: ContactState) -> Vec<Doing> {
-    let mut acts: Vec<&ActFact> = party.acts.iter().filter(|fact| !fact.after_contact).collect();
-    acts.sort_by_key(|fact| fact.step);
-    let stands = |act: Act| matches!(act, Act::Stop | Act::Hold | Act::PullOver | Act::Park);
-    let at_line = party.reasons.iter().any(|fact| matches!(fact.value, StandReason::RedLight | StandReason::StopSign))
-        || !party.controls.is_empty();
-    // Who touches with its front was only about to pass.
-    let touches_beside = !party.zones.is_empty() && party.zones.iter().all(|zone| !zone.value.is_front());
+    let row = Row::of(party, state);
     let mut list: Vec<Doing> = Vec::new();
     let mut standing = false;
-    for (number, fact) in acts.iter().enumerate() {
-        let stood = list.iter().any(|doing| stands(doing.act) || doing.act == Act::Reverse);
-        let skipped = match fact.act {
-            // Who was told to begin or go on while it drove drives already.
-            Act::SetOff => !standing && (stood || state != ContactState::SettingOff) || fact.begun && state.stands(),
-            // It stands there.
-            Act::Stop if standing => true,
-            // Who turned on its way to a light or a sign did so on another road, or has yet to.
-            Act::Turn => {
-                at_line && !stood && acts[number..].iter().any(|later| stands(later.act))
-                    || turns_again(fact, &acts)
-                    || leaves_before(fact, party)
-            }
-            Act::Park => list.last().is_some_and(|last| stands(last.act)),
-            // So did who came out of a lot and drove along since; and who runs a red light came out of a street.
-            Act::PullOut => {
-                let runs = acts[number..].iter().any(|later| later.act == Act::RunRed);
-                list.is_empty() && (runs || told_of(&party.movement) == Some(Movement::Straight))
-            }
-            // What somebody who stands, or had yet to, tried to.
-            Act::Reverse => fact.begun && state.stands(),
-            // Who had only begun to pass on a side has gone out to it.
-            Act::Pass if fact.begun => fact.side.is_none() || state.stands(),
-            Act::Pass => !touches_beside,
-            Act::Enter => fact.begun || !is_of_junction(fact),
-            act => least(act).is_none(),
-        };
-        let waits = match fact.act {
-            Act::OpenDoor | Act::Slow | Act::Follow | Act::FailToYield => true,
-            Act::SetOff | Act::Reverse => fact.begun,
-            _ => false,
-        };
-        let over = acts[number + 1..].iter().any(|later| later.act == Act::Turn);
+    for (number, fact) in row.acts.iter().enumerate() {
+        let skipped = row.skips(number, &list, standing);
+        let over = row.acts[number + 1..].iter().any(|later| later.act == Act::Turn);
         let (step, after_other) = (fact.step, fact.after_other);
         // "It then began to turn": it had set off for that, behind what the other did.
         let set_off = |implied| Doing { implied, ..Doing::plain(Act::SetOff, step, after_other) };
@@ -63,7 +27,7 @@ pub(super) fn told(party: &Party, state: ContactState) -> Vec<Doing> {
         // Who is told to have set off from there went on so.
         let goes = standing && fact.act == Act::Follow && state == ContactState::SettingOff;
         list.extend(goes.then(|| set_off(false)));
-        standing = stands(fact.act) || standing && waits && !goes;
+        standing = stands(fact.act) || standing && waits(fact) && !goes;
         if !skipped {
             let (side, begun, within_lane) = (fact.side, fact.begun, stays_in_lane(fact));
             let hard = is_hard(fact);
@@ -82,6 +46,75 @@ pub(super) fn told(party: &Party, state: ContactState) -> Vec<Doing> {
     }
     list.dedup_by_key(|doing| (doing.act, doing.side, doing.begun));
     list
+}
+
+/// Whether somebody who does this stands then.
+const fn stands(act: Act) -> bool {
+    matches!(act, Act::Stop | Act::Hold | Act::PullOver | Act::Park)
+}
+
+/// Whether somebody who stands, and is told to do this, may stand yet.
+const fn waits(fact: &ActFact) -> bool {
+    match fact.act {
+        Act::OpenDoor | Act::Slow | Act::Follow | Act::FailToYield => true,
+        Act::SetOff | Act::Reverse => fact.begun,
+        _ => false,
+    }
+}
+
+/// Everything that is told of somebody until the contact, in order, and how it is there.
+struct Row<'a> {
+    party: &'a Party,
+    state: ContactState,
+    acts: Vec<&'a ActFact>,
+    /// It came to a light or a sign.
+    at_line: bool,
+    /// It is touched, and not at its front: who touches with that was only about to pass.
+    touches_beside: bool,
+}
+
+impl<'a> Row<'a> {
+    /// What is told of somebody who is in this state at the contact.
+    fn of(party: &'a Party, state: ContactState) -> Self {
+        let mut acts: Vec<&ActFact> = party.acts.iter().filter(|fact| !fact.after_contact).collect();
+        acts.sort_by_key(|fact| fact.step);
+        let line = |fact: &Fact<StandReason>| matches!(fact.value, StandReason::RedLight | StandReason::StopSign);
+        let at_line = party.reasons.iter().any(line) || !party.controls.is_empty();
+        let touches_beside = !party.zones.is_empty() && party.zones.iter().all(|zone| !zone.value.is_front());
+        Self { party, state, acts, at_line, touches_beside }
+    }
+
+    /// Whether an act shows nothing, behind what somebody is listed to have done, and who may be standing then.
+    fn skips(&self, number: usize, list: &[Doing], standing: bool) -> bool {
+        let (fact, state) = (self.acts[number], self.state);
+        let stood = list.iter().any(|doing| stands(doing.act) || doing.act == Act::Reverse);
+        let later = |of: fn(Act) -> bool| self.acts[number..].iter().any(|later| of(later.act));
+        match fact.act {
+            // Who was told to begin or go on while it drove drives already.
+            Act::SetOff => !standing && (stood || state != ContactState::SettingOff) || fact.begun && state.stands(),
+            // It stands there.
+            Act::Stop if standing => true,
+            // Who turned on its way to a light or a sign did so on another road, or has yet to.
+            Act::Turn => {
+                self.at_line && !stood && later(stands)
+                    || turns_again(fact, &self.acts)
+                    || leaves_before(fact, self.party)
+            }
+            Act::Park => list.last().is_some_and(|last| stands(last.act)),
+            // So did who came out of a lot and drove along since; and who runs a red light came out of a street.
+            Act::PullOut => {
+                let straight = told_of(&self.party.movement) == Some(Movement::Straight);
+                list.is_empty() && (straight || later(|act| act == Act::RunRed))
+            }
+            // What somebody who stands, or had yet to, tried to.
+            Act::Reverse => fact.begun && state.stands(),
+            // Who had only begun to pass on a side has gone out to it.
+            Act::Pass if fact.begun => fact.side.is_none() || state.stands(),
+            Act::Pass => !self.touches_beside,
+            Act::Enter => fact.begun || !is_of_junction(fact),
+            act => least(act).is_none(),
+        }
+    }
 }
 
 /// Whether somebody is told to have braked hard.

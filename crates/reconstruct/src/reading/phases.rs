@@ -33,26 +33,7 @@ pub(super) fn told(party: &Party, state: ContactState) -> Vec<Phase> {
         }
         went_on |= fact.act == Act::Slow && !list.is_empty();
         slowed = fact.act == Act::Slow || slowed && fact.act != Act::Stop;
-        let phase = match fact.act {
-            Act::Stop | Act::Hold => Phase::Stands,
-            Act::SetOff
-            | Act::Accelerate
-            | Act::Enter
-            | Act::Cross
-            | Act::LaneChange
-            | Act::Swerve
-            | Act::Pass
-            | Act::Turn
-            | Act::UTurn
-            | Act::PullOut
-            | Act::PullOver => Phase::Drives,
-            // Of who stood, these tell how it came there.
-            Act::Follow | Act::Slow if list.is_empty() => Phase::Drives,
-            // Between two stands it drove aside.
-            Act::Drift if list.last() == Some(&Phase::Stands) && stops_next => Phase::Drives,
-            Act::Reverse => Phase::Reverses,
-            _ => continue,
-        };
+        let Some(phase) = phase(fact.act, list.last().copied(), stops_next) else { continue };
         // Who sets off as they touch stood before that, also where it is only told to have slowed.
         if fact.act == Act::SetOff && slowed && state == ContactState::SettingOff && list.last() == Some(&phase) {
             list.push(Phase::Stands);
@@ -67,9 +48,39 @@ pub(super) fn told(party: &Party, state: ContactState) -> Vec<Phase> {
             list.push(phase);
         }
     }
-    // The state at the contact decides how it ends: what is told of who stands behind its last stop was a plan, and a stop that is
-    // told last of who moves was not reached.
-    let last = Phase::of(state);
+    end(&mut list, &acts, last_stand, (party, Phase::of(state)));
+    let last = list.split_off(list.len().saturating_sub(MOST_PHASES));
+    let before = &last[..last.len() - 1];
+    if last.len() > 2 || before.contains(&Phase::Reverses) { last } else { Vec::new() }
+}
+
+/// What somebody does by an act, behind what it did last; and whether the next stop that is told is one to which it came.
+fn phase(act: Act, last: Option<Phase>, stops_next: bool) -> Option<Phase> {
+    match act {
+        Act::Stop | Act::Hold => Some(Phase::Stands),
+        Act::SetOff
+        | Act::Accelerate
+        | Act::Enter
+        | Act::Cross
+        | Act::LaneChange
+        | Act::Swerve
+        | Act::Pass
+        | Act::Turn
+        | Act::UTurn
+        | Act::PullOut
+        | Act::PullOver => Some(Phase::Drives),
+        // Of who stood, these tell how it came there.
+        Act::Follow | Act::Slow if last.is_none() => Some(Phase::Drives),
+        // Between two stands it drove aside.
+        Act::Drift if last == Some(Phase::Stands) && stops_next => Some(Phase::Drives),
+        Act::Reverse => Some(Phase::Reverses),
+        _ => None,
+    }
+}
+
+/// Ends the phases with what somebody does at the contact: what is told of who stands behind its last stop was a plan, and a stop that is told last
+/// of who moves was not reached.
+fn end(list: &mut Vec<Phase>, acts: &[&ActFact], last_stand: Option<usize>, (party, last): (&Party, Phase)) {
     let stopping = party.standing.as_ref().is_some_and(|fact| fact.value == Standing::Stopping);
     let behind = last_stand.map_or(&[][..], |at| &acts[at + 1..]);
     let reached = last_stand.is_some_and(|at| acts[at].act == Act::Hold) || behind.iter().any(|fact| goes_on(fact));
@@ -85,9 +96,6 @@ pub(super) fn told(party: &Party, state: ContactState) -> Vec<Phase> {
     if list.last() != Some(&last) {
         list.push(last);
     }
-    let last = list.split_off(list.len().saturating_sub(MOST_PHASES));
-    let before = &last[..last.len() - 1];
-    if last.len() > 2 || before.contains(&Phase::Reverses) { last } else { Vec::new() }
 }
 
 /// Whether somebody who does this drives, out of its line.

@@ -122,6 +122,7 @@ fn told_mps(party: &Party, meaning: SpeedMeaning) -> Option<f64> {
 }
 
 impl<'a> Half<'a> {
+    /// How somebody moves and came there, by the words, by its movement or by what is usual.
     fn of(party: &'a Party, kind: Option<Kind>, is_ego: bool) -> Self {
         let movement = told(&party.movement);
         let impact_mps = told_mps(party, SpeedMeaning::Impact);
@@ -150,6 +151,7 @@ impl<'a> Half<'a> {
         Self { party, kind, is_ego, movement, impact_mps, state, state_told, came_to_park, turning, stood }
     }
 
+    /// Whether it drives forwards at the contact.
     fn moves(&self) -> bool {
         self.state == ContactState::Moving
     }
@@ -170,6 +172,7 @@ impl<'a> Half<'a> {
         self.party.acts.iter().any(slows) && (!self.stood || slowed_after_its_stand(self.party))
     }
 
+    /// That it slowed and still moved, and from which speed.
     fn slowed_from(&self) -> Option<Slowed> {
         let came_at = told_mps(self.party, SpeedMeaning::Approach).or_else(|| faster_than(self.party, self.impact_mps));
         let slowed = self.slows() && !gained_last(self.party) && self.moves();
@@ -197,6 +200,7 @@ impl<'a> Half<'a> {
         self.is_ego || self.kind.is_none_or(|kind| rides(kind) || !light(kind))
     }
 
+    /// What it did last, where its state is told.
     fn phases(&self) -> Vec<Phase> {
         match self.state_told && self.state != ContactState::Parked && self.drives() {
             true => phases::told(self.party, self.state),
@@ -204,6 +208,7 @@ impl<'a> Half<'a> {
         }
     }
 
+    /// What it did until the contact that can be seen.
     fn acts(&self) -> Vec<Doing> {
         let mut acts = if self.drives() { acts::told(self.party, self.state) } else { Vec::new() };
         if self.kind.is_some_and(rides) {

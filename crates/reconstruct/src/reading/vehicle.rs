@@ -22,6 +22,7 @@ const FAR_SIDE: [&str; 4] =
 
 /// What a rule says of somebody: its part, or that it has none.
 type Verdict = Option<Role>;
+const NO_PART: Verdict = None;
 
 /// Somebody in a vehicle, and what several rules ask of it.
 pub(super) struct Vehicle<'a> {
@@ -72,6 +73,7 @@ impl<'a> Vehicle<'a> {
         Self::beyond_at_green,
     ];
 
+    /// Somebody, and what is asked of it.
     pub(super) fn of(story: &'a Story<'a>, told: &'a Told, other: &'a Other) -> Self {
         let acts_not = before_contact(other).next().is_none();
         let stands =
@@ -99,6 +101,7 @@ impl<'a> Vehicle<'a> {
         of.iter().any(|word| self.words.contains(word))
     }
 
+    /// Whether it did one of these before the contact.
     fn did(&self, acts: &[Act]) -> bool {
         did(self.other, acts)
     }
@@ -113,14 +116,17 @@ impl<'a> Vehicle<'a> {
         self.because(StandReason::Queue) || self.because(StandReason::LeadVehicle)
     }
 
+    /// Whether it is told ahead of the ego, by a place or by its name.
     fn is_ahead(&self) -> bool {
         self.place == Some(Origin::Ahead) || self.said(&["lead", "preceding"])
     }
 
+    /// Whether it is told beside the ego.
     fn is_beside(&self) -> bool {
         matches!(self.place, Some(Origin::Beside { .. }))
     }
 
+    /// Whether it is told on the crossing road.
     fn is_across(&self) -> bool {
         matches!(self.place, Some(Origin::Cross { .. }))
     }
@@ -264,7 +270,7 @@ impl<'a> Vehicle<'a> {
 
     /// Who waits opposite to turn itself comes towards nobody.
     fn in_turn_lane(&self) -> Option<Verdict> {
-        is_in_turn_lane(self.other).then_some(None)
+        is_in_turn_lane(self.other).then_some(NO_PART)
     }
 
     /// Who comes towards the ego, where that is told.
@@ -392,7 +398,7 @@ impl<'a> Vehicle<'a> {
         let leaves = self.did(&[Act::LaneChange, Act::Enter, Act::PullOut, Act::Cross, Act::Pass, Act::Drift])
             || self.did(&[Act::Reverse]) && !parks_backwards(self.other);
         let elsewhere = self.drives_on() && !self.is_ahead();
-        (!there || leaves || elsewhere || self.place == Some(Origin::Behind)).then_some(None)
+        (!there || leaves || elsewhere || self.place == Some(Origin::Behind)).then_some(NO_PART)
     }
 
     /// Who stands somewhere, and is not told to have gone, stands yet when the ego drives on: not in its lane.
@@ -400,7 +406,7 @@ impl<'a> Vehicle<'a> {
         let holds = |fact: &ActFact| matches!(fact.act, Act::Hold | Act::Park);
         let only_holds = !self.acts_not && before_contact(self.other).all(holds) && self.place.is_none();
         let goes_on = sets_off(self.told) && is_straight(self.told) && !self.told.is_controlled();
-        (only_holds && goes_on && !self.queue()).then_some(None)
+        (only_holds && goes_on && !self.queue()).then_some(NO_PART)
     }
 
     /// At green nobody stands before the line: who stops ahead does so behind the junction.

@@ -56,23 +56,7 @@ impl Told {
             Some(_) => Movement::LaneDeparture,
             None => self.sv.movement?,
         };
-        // Who makes room for another before it stops does so away from it.
-        let pulls_aside = matches!(stopped, Some(Act::PullOver | Act::Park)) && self.origin == Origin::Opposite;
-        let makes_room =
-            pulls_aside || matches!(stopped, Some(Act::Drift | Act::Swerve)) && self.striker == Some(Striker::Cp);
-        // Who stopped on its way to another lane, and is passed by who was behind it, had gone away from that one's side.
-        let passed = self.cp.passes_on().filter(|_| stopped == Some(Act::LaneChange) && self.origin == Origin::Behind);
-        let towards = self.sv.aside.or(passed.map(LeftRight::other)).or(match self.origin {
-            // For who has turned into the other direction it makes room at the kerb.
-            Origin::Cross { .. } if makes_room && self.comes_against() => Some(right),
-            Origin::Beside { side } | Origin::Cross { side } => Some(if makes_room { side.other() } else { side }),
-            _ => None,
-        });
-        // Nobody parks, or makes room, in the way of who comes towards it.
-        let pulls_over = movement == Movement::ParkingManeuver && self.origin == Origin::Opposite;
-        let towards = towards.or(pulls_over.then_some(right));
-        let towards = towards
-            .or_else(|| side_of(&self.sv.zones).map(|side| if (side > 0.0) != makes_room { left } else { right }));
+        let towards = self.sv_towards(stopped, movement);
         let by = |usual: LeftRight, way_m: f64| if towards.unwrap_or(usual) == left { -way_m } else { way_m };
         let (from_t_m, to_t_m) = match movement {
             // Who runs into one that is parked ahead of it has not come far.
@@ -102,6 +86,27 @@ impl Told {
             done: (self.lane_changed || changed || self.sv.goes_round) && stopped.is_none(),
             back,
         })
+    }
+
+    /// To which side the ego leaves its line, by what it stopped for or how it moves, where that is told or follows from where the partner is.
+    fn sv_towards(&self, stopped: Option<Act>, movement: Movement) -> Option<LeftRight> {
+        let (left, right) = (LeftRight::Left, LeftRight::Right);
+        // Who makes room for another before it stops does so away from it.
+        let pulls_aside = matches!(stopped, Some(Act::PullOver | Act::Park)) && self.origin == Origin::Opposite;
+        let makes_room =
+            pulls_aside || matches!(stopped, Some(Act::Drift | Act::Swerve)) && self.striker == Some(Striker::Cp);
+        // Who stopped on its way to another lane, and is passed by who was behind it, had gone away from that one's side.
+        let passed = self.cp.passes_on().filter(|_| stopped == Some(Act::LaneChange) && self.origin == Origin::Behind);
+        let towards = self.sv.aside.or(passed.map(LeftRight::other)).or(match self.origin {
+            // For who has turned into the other direction it makes room at the kerb.
+            Origin::Cross { .. } if makes_room && self.comes_against() => Some(right),
+            Origin::Beside { side } | Origin::Cross { side } => Some(if makes_room { side.other() } else { side }),
+            _ => None,
+        });
+        // Nobody parks, or makes room, in the way of who comes towards it.
+        let pulls_over = movement == Movement::ParkingManeuver && self.origin == Origin::Opposite;
+        let towards = towards.or(pulls_over.then_some(right));
+        towards.or_else(|| side_of(&self.sv.zones).map(|side| if (side > 0.0) != makes_room { left } else { right }))
     }
 
     /// How far the ego leaves its line that drifts or dodges: no farther than its lane, where it is told to have stayed in that, or makes
