@@ -139,10 +139,15 @@ fn pose_at(track: &ActorTrack, time_s: f64) -> Pose {
 
 /// Whom else the partner touched before.
 pub(super) fn toucher<'a>(rollout: &'a Rollout, touch: &Touch<'_>) -> Option<&'a ActorTrack> {
+    rollout.actors.get(thrower(rollout, touch.time_s)?)
+}
+
+/// Number of whom the partner touched first before this time, the ego aside. [s]
+pub(super) fn thrower(rollout: &Rollout, until_s: f64) -> Option<usize> {
     let number = rollout.actors.iter().position(|track| track.id == "cp")?;
-    rollout.events.iter().take_while(|event| event.time_s < touch.time_s).find_map(|event| match event.kind {
+    rollout.events.iter().take_while(|event| event.time_s < until_s).find_map(|event| match event.kind {
         EventKind::Contact { a, b, .. } if a != 0 && (a == number || b == number) => {
-            rollout.actors.get(if a == number { b } else { a })
+            Some(if a == number { b } else { a })
         }
         _ => None,
     })
@@ -182,7 +187,7 @@ pub(super) fn crash(told: &Told, rollout: &Rollout) -> Option<String> {
     let id = |number: usize| rollout.actors[number].id.as_str();
     rollout.events.iter().find_map(|event| match event.kind {
         EventKind::Contact { a, b, .. } => {
-            let throws = told.pushed && [id(a), id(b)].iter().all(|id| matches!(*id, "cp" | "pusher"));
+            let throws = told.pushed && [id(a), id(b)].contains(&"cp");
             let untold = a > 0 && !touched[a] && !touched[b] && !throws;
             (touched[a], touched[b]) = (a > 0, true);
             untold.then(|| format!("{} and {} touch at {:.2} s", id(a), id(b), event.time_s))

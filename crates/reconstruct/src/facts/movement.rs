@@ -143,6 +143,12 @@ impl Way<'_> {
         Vec2::from_heading(first.heading).cross(last.position() - first.position())
     }
 
+    /// Whether it is so far beside that line, and how far. [m]
+    fn sideways(&self, least_m: f64) -> (bool, String) {
+        let beside_m = self.beside_m().abs();
+        (beside_m >= least_m, format!("{beside_m:.1} m aside"))
+    }
+
     /// How far it was beside that at most on its way. [m]
     fn strays_m(&self) -> f64 {
         let first = &self.until()[0];
@@ -227,121 +233,133 @@ const SLANTS_DEG: f64 = 15.0;
 const ACROSS_DEG: f64 = 60.0;
 const BENDS_DEG: f64 = 9.5;
 
+/// Whether a movement is shown, and what is seen; else why it cannot be.
+type Seen = Result<(bool, String), &'static str>;
+
 /// What is expected, whether it is shown, and what is seen.
 pub(super) fn check(side: &Side, way: &Way<'_>) -> Option<(String, CheckResult, String)> {
     let movement = side.movement?;
-    let (turned, beside_m) = (way.turned_deg(), way.beside_m());
-    let sideways = |least_m: f64| (beside_m.abs() >= least_m, format!("{:.1} m aside", beside_m.abs()));
-    let bent = || (turned_words(turned), turned.abs());
-    let (shown, observed) = match movement {
-        Movement::Stopped | Movement::Parked => {
-            let stood = way.stood();
-            let words = if stood { "it stood" } else { "it never stood" };
-            (
-                stood,
-                if side.turning == Turning::No {
-                    words.to_owned()
-                } else {
-                    format!("{words}, {}", turned_words(turned))
-                },
-            )
-        }
+    let result = |shown: bool| if shown { CheckResult::Shown } else { CheckResult::NotShown };
+    if side.backs_in && matches!(movement, Movement::Backing | Movement::ParkingManeuver) {
+        let (shown, observed) = backs_in(way);
+        return Some((word(side) + ", towards the kerb", result(shown), observed));
+    }
+    let (shown, observed) = match seen(side, movement, way) {
+        Ok(seen) => seen,
+        Err(why) => return Some((word(side), CheckResult::CannotBeShown, why.to_owned())),
+    };
+    let (dodges, dodged) = way.sideways(LEFT_LINE_M);
+    let shown = shown && turns(side, movement, way) && (dodges || !side.dodges);
+    let observed = if side.dodges { format!("{observed}, {dodged}") } else { observed };
+    let turn = matches!(movement, Movement::LeftTurn | Movement::RightTurn);
+    let later = if turn && side.turns_later { ", or yet to begin" } else { "" };
+    Some((word(side) + later, result(shown), observed))
+}
+
+/// The movement by itself, without the turn or the dodging that is told with it.
+fn seen(side: &Side, movement: Movement, way: &Way<'_>) -> Seen {
+    Ok(match movement {
+        Movement::Stopped | Movement::Parked => stands(side, way),
         Movement::ChangingLanes | Movement::Merging if side.merges_in => {
             let nearer_m = way.comes_nearer_m();
             (nearer_m >= CHANGED_M, format!("{nearer_m:.1} m nearer to the other's line"))
         }
-        Movement::ChangingLanes | Movement::Merging | Movement::CrossingIntoOpposingLane => sideways(CHANGED_M),
-        Movement::LaneDeparture => sideways(LEFT_LINE_M),
-        Movement::Passing => {
-            // Who is told to go round somebody is seen out of its line.
-            let out = sideways(CHANGED_M);
-            if side.goes_round && !out.0 {
-                return Some((word(side), CheckResult::NotShown, out.1));
-            }
-            let passed = way.passed();
-            if !passed && way.met.speed().abs() > STANDS_MPS {
-                // It passes somebody else.
-                return Some((word(side), CheckResult::CannotBeShown, "whom it passes is not drawn".to_owned()));
-            }
-            (passed, if passed { "it came by" } else { "it did not come by" }.to_owned())
-        }
-        Movement::Backing => {
-            let (reversed, slant) = (way.reversed(), way.slant_deg());
-            if side.backs_in {
-                return Some(backs_in(side, way));
-            }
-            let words = if reversed { "it went backwards" } else { "it did not go backwards" };
-            (
-                reversed && (side.slants.is_none() || slant >= SLANTS_DEG),
-                format!("{words}, at {slant:.0} degrees to the road"),
-            )
-        }
-        Movement::EnteringTraffic => {
-            let (words, degrees) = bent();
-            // Who comes along a crossing road enters the ego's straight across; who pulls out of it does so where it ran its signal or sign.
-            let pulls_out = side.acts.iter().any(|doing| doing.act == Act::PullOut);
-            let pulls_out = pulls_out && side.control.and_then(|said| said.obeyed) != Some(Obeyed::No);
-            let across = way.crosses && way.slant_deg() >= ACROSS_DEG && !pulls_out;
-            let out = way.is_off_lanes(&way.track.states[0]) || way.stood() || across || way.came_along;
-            (
-                out && (beside_m.abs() >= LEFT_LINE_M || degrees >= BENDS_DEG || across),
-                format!("{words}, {:.1} m aside", beside_m.abs()),
-            )
-        }
-        Movement::ParkingManeuver => {
-            if side.backs_in {
-                return Some(backs_in(side, way));
-            }
-            let (words, degrees) = bent();
-            let slow = way.until()[way.until().len() - 1].velocity().length() < PARKS_MPS;
-            let swings = side.slants.is_none() || way.slant_deg() >= BENDS_DEG;
-            let turns = way.reversed() && swings || beside_m.abs() >= LEFT_LINE_M || degrees >= BENDS_DEG;
-            let there = !way.parks_at_kerb || way.is_off_lanes(&way.until()[way.until().len() - 1]);
-            (slow && turns && there, format!("{words}, {:.1} m aside", beside_m.abs()))
-        }
+        Movement::ChangingLanes | Movement::Merging | Movement::CrossingIntoOpposingLane => way.sideways(CHANGED_M),
+        Movement::LaneDeparture => way.sideways(LEFT_LINE_M),
+        Movement::Passing => return passes(side, way),
+        Movement::Backing => backs(side, way),
+        Movement::EnteringTraffic => enters_traffic(side, way),
+        Movement::ParkingManeuver => parks(side, way),
         Movement::WrongWay => match way.against() {
-            None => return Some((word(side), CheckResult::CannotBeShown, "on no lane".to_owned())),
+            None => return Err("on no lane"),
             Some(against) => (against, if against { "against its lane" } else { "along its lane" }.to_owned()),
         },
-        Movement::NmWaiting | Movement::NmOnSidewalk => {
-            return Some((word(side), CheckResult::CannotBeShown, "no such place is drawn".to_owned()));
-        }
+        Movement::NmWaiting | Movement::NmOnSidewalk => return Err("no such place is drawn"),
         Movement::Straight
         | Movement::LeftTurn
         | Movement::RightTurn
         | Movement::UTurn
         | Movement::NmCrossing
         | Movement::NmAlongside
-        | Movement::NmInRoadway => {
-            let fits = match side.turning {
-                // Who swings out and back has not gone straight on.
-                Turning::No if way.keeps_lane => side.turns_later || turned.abs() < KEEPS_DEG && way.keeps_line(side),
-                Turning::No => side.turns_later || turned.abs() < STRAIGHT_DEG,
-                Turning::Round => turned.abs() > ROUND_DEG,
-                // Whose turn is over goes straight on.
-                Turning::Left | Turning::Right => !side.turned || movement != Movement::Straight || way.turns_no_more(),
-            };
-            (fits, turned_words(turned) + &swung_words(turned, way.most_turned_deg()))
-        }
-    };
+        | Movement::NmInRoadway => goes_on(side, movement, way),
+    })
+}
+
+/// Whether the turn that is told of its way is driven, begun or yet to come.
+fn turns(side: &Side, movement: Movement, way: &Way<'_>) -> bool {
+    let turned = way.turned_deg();
     let least = match (side.turned, side.turns_wide) {
         (true, _) => TURNED_DEG,
         (false, true) => TURNS_WIDE_DEG,
         (false, false) => TURNS_DEG,
     };
-    let turns = match side.turning {
+    match side.turning {
         Turning::Left | Turning::Right if side.turns_later => turned.abs() < STRAIGHT_DEG,
         _ if side.turns_later => way.turns_as_told(movement),
         Turning::Left => turned > least,
         Turning::Right => turned < -least,
         Turning::No | Turning::Round => true,
+    }
+}
+
+fn stands(side: &Side, way: &Way<'_>) -> (bool, String) {
+    let stood = way.stood();
+    let words = if stood { "it stood" } else { "it never stood" };
+    let turned = || format!("{words}, {}", turned_words(way.turned_deg()));
+    (stood, if side.turning == Turning::No { words.to_owned() } else { turned() })
+}
+
+/// Who is told to go round somebody is seen out of its line. Whom it passes may be drawn by nobody, where that is not the other one.
+fn passes(side: &Side, way: &Way<'_>) -> Seen {
+    let out = way.sideways(CHANGED_M);
+    if side.goes_round && !out.0 {
+        return Ok(out);
+    }
+    let passed = way.passed();
+    if !passed && way.met.speed().abs() > STANDS_MPS {
+        return Err("whom it passes is not drawn");
+    }
+    Ok((passed, if passed { "it came by" } else { "it did not come by" }.to_owned()))
+}
+
+fn backs(side: &Side, way: &Way<'_>) -> (bool, String) {
+    let (reversed, slant) = (way.reversed(), way.slant_deg());
+    let words = if reversed { "it went backwards" } else { "it did not go backwards" };
+    let slants = side.slants.is_none() || slant >= SLANTS_DEG;
+    (reversed && slants, format!("{words}, at {slant:.0} degrees to the road"))
+}
+
+/// Who comes along a crossing road enters the ego's straight across; who pulls out of it does so where it ran its signal or sign.
+fn enters_traffic(side: &Side, way: &Way<'_>) -> (bool, String) {
+    let (turned, beside_m) = (way.turned_deg(), way.beside_m().abs());
+    let pulls_out = side.acts.iter().any(|doing| doing.act == Act::PullOut);
+    let pulls_out = pulls_out && side.control.and_then(|said| said.obeyed) != Some(Obeyed::No);
+    let across = way.crosses && way.slant_deg() >= ACROSS_DEG && !pulls_out;
+    let out = way.is_off_lanes(&way.track.states[0]) || way.stood() || across || way.came_along;
+    let enters = beside_m >= LEFT_LINE_M || turned.abs() >= BENDS_DEG || across;
+    (out && enters, format!("{}, {beside_m:.1} m aside", turned_words(turned)))
+}
+
+fn parks(side: &Side, way: &Way<'_>) -> (bool, String) {
+    let (turned, beside_m) = (way.turned_deg(), way.beside_m().abs());
+    let last = &way.until()[way.until().len() - 1];
+    let swings = side.slants.is_none() || way.slant_deg() >= BENDS_DEG;
+    let turns = way.reversed() && swings || beside_m >= LEFT_LINE_M || turned.abs() >= BENDS_DEG;
+    let there = !way.parks_at_kerb || way.is_off_lanes(last);
+    let slow = last.velocity().length() < PARKS_MPS;
+    (slow && turns && there, format!("{}, {beside_m:.1} m aside", turned_words(turned)))
+}
+
+/// Who goes straight on, or turns. Who swings out and back has not gone straight on; whose turn is over goes straight on.
+fn goes_on(side: &Side, movement: Movement, way: &Way<'_>) -> (bool, String) {
+    let turned = way.turned_deg();
+    let fits = match side.turning {
+        Turning::No if way.keeps_lane => side.turns_later || turned.abs() < KEEPS_DEG && way.keeps_line(side),
+        Turning::No => side.turns_later || turned.abs() < STRAIGHT_DEG,
+        Turning::Round => turned.abs() > ROUND_DEG,
+        Turning::Left | Turning::Right => !side.turned || movement != Movement::Straight || way.turns_no_more(),
     };
-    let (dodges, dodged) = sideways(LEFT_LINE_M);
-    let shown = shown && turns && (dodges || !side.dodges);
-    let observed = if side.dodges { format!("{observed}, {dodged}") } else { observed };
-    let turn = matches!(movement, Movement::LeftTurn | Movement::RightTurn);
-    let later = if turn && side.turns_later { ", or yet to begin" } else { "" };
-    Some((word(side) + later, if shown { CheckResult::Shown } else { CheckResult::NotShown }, observed))
+    (fits, turned_words(turned) + &swung_words(turned, way.most_turned_deg()))
 }
 
 /// Who backs into a space at the kerb has come out of its line by so much while it reversed, and was at an angle to it. [m, deg]
@@ -349,7 +367,7 @@ const BACKED_IN_M: f64 = 0.8;
 const BACKED_IN_DEG: f64 = 10.0;
 
 /// Whether somebody backed into a space at the kerb.
-fn backs_in(side: &Side, way: &Way<'_>) -> (String, CheckResult, String) {
+fn backs_in(way: &Way<'_>) -> (bool, String) {
     let until = way.until();
     let backs = until.iter().rposition(|state| state.speed() > -STANDS_MPS).unwrap_or(0);
     let (first, last) = (&until[backs], &until[until.len() - 1]);
@@ -357,8 +375,7 @@ fn backs_in(side: &Side, way: &Way<'_>) -> (String, CheckResult, String) {
     let angle = |state: &ActorState| math::wrap_angle(state.heading - first.heading).to_degrees().abs();
     let most_deg = until[backs..].iter().map(angle).fold(0.0, f64::max);
     let shown = aside_m >= BACKED_IN_M && most_deg >= BACKED_IN_DEG;
-    let result = if shown { CheckResult::Shown } else { CheckResult::NotShown };
-    (word(side) + ", towards the kerb", result, format!("{aside_m:.1} m aside in reverse, by {most_deg:.0} degrees"))
+    (shown, format!("{aside_m:.1} m aside in reverse, by {most_deg:.0} degrees"))
 }
 
 fn word(side: &Side) -> String {

@@ -1,5 +1,6 @@
 //! Whether a rollout holds the others who are told of, where and when they matter.
 
+use crate::facts::contact::thrower;
 use crate::facts::near::SLOWED_MPS;
 use crate::facts::signals;
 use crate::facts::things;
@@ -14,7 +15,7 @@ use recrash_model::account::{ContactState, Kind, LeftRight, Origin, StandReason}
 use recrash_model::geometry::{OrientedBox, Pose, Vec2};
 use recrash_model::kinds::PartnerKind;
 use recrash_model::math;
-use recrash_model::rollout::{ActorTrack, EventKind, Rollout};
+use recrash_model::rollout::{ActorTrack, Rollout};
 use recrash_roads::Scenario;
 
 /// Whoever stands ahead of an ego stands no farther ahead of its front, who crosses on foot, and who crosses or comes by in a vehicle.
@@ -90,10 +91,10 @@ impl<'a> Seen<'a> {
 
     /// Whether somebody who is drawn is elsewhere than it is wanted, or drives against its red light.
     pub(super) fn strays(&self, scenario: &Scenario) -> bool {
+        let thrower = thrower(self.rollout, f64::INFINITY).map(|number| &self.rollout.actors[number]);
         let runs_red = |track: &ActorTrack| {
-            !matches!(track.id.as_str(), "cp" | "pusher")
-                && !std::ptr::eq(track, self.ego)
-                && signals::runs_red(scenario, track)
+            let is_of_crash = track.id == "cp" || thrower.is_some_and(|thrower| std::ptr::eq(track, thrower));
+            !is_of_crash && !std::ptr::eq(track, self.ego) && signals::runs_red(scenario, track)
         };
         let there = |extra: &&Extra| self.find(extra).is_some();
         self.told.extras.iter().filter(there).any(|extra| !self.holds(extra))
@@ -171,7 +172,7 @@ impl<'a> Seen<'a> {
 
     /// Whether who is told to have thrown the partner touched it.
     fn throws(&self) -> bool {
-        let number = self.rollout.actors.iter().position(|track| track.id == "pusher");
+        let number = thrower(self.rollout, f64::INFINITY);
         let as_told = |number: usize| {
             let kind = self.told.pusher.and_then(Kind::partner_kind);
             let track = &self.rollout.actors[number];
@@ -179,13 +180,7 @@ impl<'a> Seen<'a> {
             let kind = kind.is_none_or(|kind| kind == track.kind);
             kind && (stood || !self.told.pusher_stands) && self.comes_from(track)
         };
-        let touches = |number: usize| {
-            self.rollout.events.iter().any(|event| match event.kind {
-                EventKind::Contact { a, b, .. } => a == number || b == number,
-                _ => false,
-            })
-        };
-        number.is_some_and(|number| as_told(number) && touches(number))
+        number.is_some_and(as_told)
     }
 
     /// Whether who threw the partner came from where it is told to: along the crossing road from a side, or towards the ego.

@@ -1,6 +1,6 @@
 //! Whether somebody strays: goes another way than is told, or than anybody drives.
 
-use crate::facts::contact::first_touch;
+use crate::facts::contact::{first_touch, thrower};
 use crate::facts::keeping::{self, ABSURD, is_for_narrow};
 use crate::facts::movement;
 use crate::facts::seen::Seen;
@@ -51,12 +51,12 @@ pub(crate) fn strays(told: &Told, scenario: &Scenario, rollout: &Rollout) -> boo
     if told.keeps_direction() && track.states[..=until].iter().step_by(10).filter(|state| oncoming(state)).count() > 1 {
         return true;
     }
-    let off_road = |id: &str| {
-        let other = rollout.actors.iter().find(|track| track.id == id)?;
-        let until = until_touched(rollout, other, touch.time_s);
-        Some(until.iter().step_by(10).any(|state| !scenario.network().on_road(state.position())))
+    let off_road = |other: usize| {
+        let until = until_touched(rollout, &rollout.actors[other], touch.time_s);
+        until.iter().step_by(10).any(|state| !scenario.network().on_road(state.position()))
     };
-    if keeping::is_tight(told.cp.kind, until_touched(rollout, track, touch.time_s)) || off_road("pusher") == Some(true)
+    if keeping::is_tight(told.cp.kind, until_touched(rollout, track, touch.time_s))
+        || thrower(rollout, touch.time_s).is_some_and(off_road)
     {
         return true;
     }

@@ -10,12 +10,16 @@ use recrash_model::zones::ContactZone;
 
 static BEHIND: Pattern = Pattern::new(r"\b(behind|rear|follow|trail|back of)");
 static AHEAD: Pattern = Pattern::new(r"\b(ahead|front|lead|stopp|slow|queue|parked|preced|stationary)");
+/// Things that lie or stand on somebody's way: their name is all that is told of where they are.
+static LIES: Pattern = Pattern::new(
+    r"\b(gate|barrier|bollard|pole|post|cone|debris|cur?b|kerb|median|island|wall|fence|tree|branch|pothole|sign|object|tire|tyre|wheel|pallet|box|ladder)",
+);
 static OPPOSITE: Pattern =
     Pattern::new(r"\b(opposite|opposing|oncoming|other way|toward|head-?on|(north|south|east|west)\w*bound)");
 static LEFT: Pattern = Pattern::new(r"\b(left|driver'?s?[- ]side|north|south|east|west)");
 static RIGHT: Pattern = Pattern::new(r"\b(right|passenger[- ]side|north|south|east|west)");
 static BESIDE: Pattern = Pattern::new(
-    r"\b(left|right|adjacent|next to|beside|alongside|lane|parallel|pass|overt|merg|side[- ]by[- ]side|side-?swip)",
+    r"\b(left|right|adjacent|next to|beside|alongside|lane|parallel|pass|overt|merg|side[- ]by[- ]side|side-?swip|graz)",
 );
 static LOT: Pattern = Pattern::new(r"\b(stall|parking|parked|space|spot)");
 static DRIVEWAY: Pattern = Pattern::new(r"\b(driveway|alley|lot|garage|station|entrance|exit)");
@@ -24,13 +28,14 @@ static SIDEWALK: Pattern = Pattern::new(r"\b(sidewalk|curb|kerb|crosswalk|paveme
 static ABOVE: Pattern = Pattern::new(r"\b(above|fell|fall|drop|gate|arm|tree|branch|over)");
 
 static ONWARD: Pattern = Pattern::new(
-    r"\b(straight|through|proceed|travel|continu|cross|enter|driv|drove|going|went|mov|head|(north|south|east|west)\w*bound|pass|approach|follow|slow|brak|com(e|ing)|came|traffic|flow|rode|rid|walk|run|ran|advanc|operat)",
+    r"\b(straight|through|proceed|travel|continu|cross|enter|driv|drove|going|went|mov|head|(north|south|east|west)\w*bound|pass|approach|follow|slow|brak|com(e|ing)|came|traffic|flow|rode|rid|walk|run|ran|advanc|operat|oncoming|opposite|weav|return|clear)",
 );
 static LANE: Pattern = Pattern::new(r"\b(lane|merg|cut|drift|swerv|veer|encroach)");
 static PASSING: Pattern =
     Pattern::new(r"\b(pass|overt|around|go(ing)? by|went by|past|alongside|next to|between|split|squeez)");
 static TURNED_ROUND: Pattern = Pattern::new(r"u-?\s?turn");
-static STOOD: Pattern = Pattern::new(r"\b(stop|station|stand|stood|wait|yield|idl|queue|rest|held|hold|halt|remain)");
+static STOOD: Pattern =
+    Pattern::new(r"\b(stop|station|stand|stood|wait|yield|idl|queue|rest|held|hold|halt|remain|paus)");
 static PARKED: Pattern = Pattern::new(r"\bpark");
 static BACKWARDS: Pattern = Pattern::new(r"\b(back|revers)");
 static PULLS_OUT: Pattern = Pattern::new(r"\b(enter|pull|exit|leav|left|depart|merg|out of)");
@@ -40,7 +45,7 @@ static SETS_OFF: Pattern = Pattern::new(
 static SLOWS: Pattern = Pattern::new(r"\b(stop|station|stand|stood|wait|park|slow|brak|yield|queue|halt)");
 
 static MEETS: Pattern = Pattern::new(
-    r"\b(contact|struck|strik|hit|collid|collision|impact|crash|bump|scrap|side-?swip|swip|clip|rear[- ]?end|touch|into|brush|graz)",
+    r"\b(contact|struck|strik|hit|collid|collision|impact|crash|bump|scrap|side-?swip|swip|clip|rear[- ]?end|touch|into|brush|graz|on top of|r[au]n over|pinn)",
 );
 static DRIVES: Pattern = Pattern::new(
     r"\b(autonom|ads?\b|automat|manual|driver|operator|operation|level|engag|disengag|mode|control|took over|human|remote)",
@@ -48,7 +53,7 @@ static DRIVES: Pattern = Pattern::new(
 static SPEED_CHANGE: Pattern = Pattern::new(r"\b(slow|brak|decel|stop|yield|halt|reduc|eas(ed|ing))");
 static FASTER: Pattern = Pattern::new(r"\b(accel|speed|faster|hurr|race|sped)");
 static SIDEWAYS: Pattern = Pattern::new(
-    r"\b(lane|merg|cut|drift|swerv|veer|encroach|left|right|steer|mov|shift|cross|avoid|evas|evad|around|into|over|wide|swing|swung|nudg)",
+    r"\b(lane|merg|cut|drift|swerv|veer|encroach|left|right|steer|mov|shift|cross|avoid|evas|evad|around|into|over|wide|swing|swung|nudg|weav|deflect|return)",
 );
 static TURNS: Pattern = Pattern::new(r"\b(turn|left|right|u-?\s?turn|maneuver|manoeuv|swing|swung)");
 static ENTERS: Pattern = Pattern::new(
@@ -57,25 +62,29 @@ static ENTERS: Pattern = Pattern::new(
 static SIGNAL: Pattern = Pattern::new(r"\b(red|green|yellow|amber|light|signal|phase|arrow)");
 static STOP_SIGN: Pattern = Pattern::new(r"\bstop");
 static YIELD: Pattern = Pattern::new(r"\b(yield|right[- ]of[- ]way|give way|gave way|without|fail)");
-static PUSHED: Pattern =
-    Pattern::new(r"\b(push|propel|forc|caus|into|struck|hit|throw|thrown|knock|spun|spin|contact|collid|impact|eject)");
+static PUSHED: Pattern = Pattern::new(
+    r"\b(push|propel|forc|caus|into|struck|hit|throw|thrown|knock|spun|spin|contact|collid|impact|eject|deflect|shov|rear[- ]?end)",
+);
 static AGAINST: Pattern = Pattern::new(r"\b(wrong|oppos|against|oncoming)");
 static FALLS: Pattern =
     Pattern::new(r"\b(fall|fell|drop|dislodg|lost|came off|detach|blew|blow|laid|lay|slid|tip|trip)");
-static LOSES: Pattern = Pattern::new(r"\b(control|spin|spun|skid|slid|hydroplan|lost|slip|fish)");
+static LOSES: Pattern =
+    Pattern::new(r"\b(control|spin|spun|skid|slid|hydroplan|lost|slip|fish|overturn|tip|roll\w* (over|onto))");
 static ROLLS: Pattern = Pattern::new(r"\b(roll|drift|unoccupied|slid|mov)");
-static LEAVES: Pattern = Pattern::new(r"\b(left|leav|fled|flee|depart|drove (off|away)|continu|proceed|rode|ran)");
+static LEAVES: Pattern = Pattern::new(
+    r"\b(left|leav|fled|flee|depart|drove (off|away)|continu|proceed|rode|ran|fail\w* to (stop|remain|exchange|stay)|without)",
+);
 static DIRECTION: Pattern = Pattern::new(r"\b(north|south|east|west)");
 static BESIDE_LANE: Pattern = Pattern::new(
     r"\b(lane|shoulder|curb|kerb|sidewalk|bike|bicycle|bus|lot|side|park|pulled over|oppos|oncoming|line)",
 );
 static OVER_LINE: Pattern = Pattern::new(
-    r"\b(lane|line|partial|partly|half|strad|encroach|over|into|across|curb|kerb|protrud|intrud|block|angle|stick)",
+    r"\b(lane|line|partial|partly|half|strad|encroach|over|into|across|curb|kerb|protrud|intrud|block|angle|stick|(center|centre|middle) of)",
 );
-static AHEAD_OF: Pattern = Pattern::new(r"\b(ahead|behind|front|lead|pass|overt|past|follow|back)");
+static AHEAD_OF: Pattern = Pattern::new(r"\b(ahead|behind|front|lead|pass|overt|past|follow|back|approach|rear)");
 static ARMS: Pattern = Pattern::new(r"\b(way|leg|arm|intersect|junction|four|three|t-|fork|driveway|street|road)");
 static NUMBER: Pattern = Pattern::new(
-    r"(\d+(?:\.\d+)?)[- ]*(mph|miles? (?:per|an) hour|km/h|kph|kilomet\w+ per hour|m/s|met\w+ per second)",
+    r"(\d+(?:\.\d+)?)[- ]*(mph|miles? (?:per|an) hour|km/h|kph|kilomet\w+ per hour|m/s|mps|met\w+ per second)",
 );
 
 /// Whether words can say from where the partner came.
@@ -87,7 +96,7 @@ pub fn origin(from: Origin, words: &str) -> bool {
     };
     match from {
         Origin::Behind => BEHIND.is_match(words) || PASSING.is_match(words),
-        Origin::Ahead => AHEAD.is_match(words) || MEETS.is_match(words) || PASSING.is_match(words),
+        Origin::Ahead => [&AHEAD, &MEETS, &PASSING, &LIES].iter().any(|pattern| pattern.is_match(words)),
         Origin::Opposite => OPPOSITE.is_match(words),
         Origin::Beside { side: _ } => BESIDE.is_match(words),
         Origin::Cross { side: from } => side(from),
@@ -165,6 +174,9 @@ pub fn kind(kind: Kind, words: &str) -> bool {
             "child",
             "jogger",
             "runner",
+            "passenger",
+            "rider",
+            "occupant",
         ]),
         KindGroup::Car | KindGroup::Truck | KindGroup::Animal | KindGroup::Object | KindGroup::Other => {
             words.chars().any(char::is_alphabetic)
@@ -201,7 +213,7 @@ pub fn speed(mps: f64, words: &str) -> bool {
     NUMBER.captures_iter(words).any(|found| {
         let number: f64 = found[1].parse().unwrap_or(f64::NAN);
         let unit = match &found[2] {
-            unit if unit.starts_with("m/") || unit.starts_with("met") => 1.0,
+            unit if unit.starts_with("m/") || unit == "mps" || unit.starts_with("met") => 1.0,
             unit if unit.starts_with('k') => 1.0 / 3.6,
             _ => 0.447_04,
         };
@@ -331,6 +343,9 @@ pub fn reason(reason: StandReason, words: &str) -> bool {
             "man",
             "individual",
             "guard",
+            "rider",
+            "passenger",
+            "step",
         ]),
         StandReason::BlockedPath => words.split_whitespace().count() > 1,
         StandReason::BlockedJunction => any(&["intersect", "junction", "crosswalk", "box", "block"]),
@@ -377,9 +392,17 @@ pub fn control(control: Control, words: &str) -> bool {
 /// Whether words can name what a road has.
 pub fn feature(feature: RoadFeature, words: &str) -> bool {
     let stems: &[&str] = match feature {
-        RoadFeature::Intersection => {
-            &["intersect", "junction", "corner", "turn", "cross", "right-of-way", "right of way"]
-        }
+        RoadFeature::Intersection => &[
+            "intersect",
+            "junction",
+            "corner",
+            "turn",
+            "cross",
+            "right-of-way",
+            "right of way",
+            "traffic light",
+            "red light",
+        ],
         RoadFeature::Signal => &["signal", "light", "green", "red"],
         RoadFeature::StopSign => &["stop"],
         RoadFeature::YieldSign => &["yield"],
