@@ -1,7 +1,6 @@
 //! What the words tell of somebody else: whether the ego acted for it, where it is, and what it is to the ego.
 
 use crate::reading::turns::leaves_line;
-use crate::reading::vehicle::Vehicle;
 use crate::reading::words::{before_contact, span, text};
 use crate::told::crash::Told;
 use crate::told::others::Role;
@@ -280,30 +279,6 @@ impl Story<'_> {
         let slows = ego().any(|fact| fact.step > off && matches!(fact.act, Act::Slow | Act::Stop));
         let last = before_contact(other).max_by_key(|fact| fact.step);
         slows && last.is_some_and(|fact| fact.step > off && matches!(fact.act, Act::Hold | Act::Stop | Act::Slow))
-    }
-
-    pub(super) fn role(&self, told: &Told, other: &Other) -> Option<Role> {
-        // Who throws the partner is drawn there; and who comes afterwards is not.
-        let later = !other.acts.is_empty() && other.acts.iter().all(|fact| fact.after_contact) && !self.is_near(other);
-        if other.touched_partner || later {
-            return None;
-        }
-        match other.kind.value.group() {
-            // Who rides into the ego's lane from beside is in it.
-            KindGroup::Cyclist if before_contact(other).any(|fact| fact.act == Act::LaneChange) => {
-                Vehicle::of(self, told, other).role()
-            }
-            // Who stays at the side of an ego that drives on, and for whom it did nothing, is near alone.
-            KindGroup::OnFoot
-                if told.sv.state == ContactState::Moving && stays_close(other) && !self.is_near(other) =>
-            {
-                None
-            }
-            KindGroup::OnFoot | KindGroup::Cyclist => self.is_met(other).then_some(Role::Walker),
-            KindGroup::Animal => self.is_met(other).then_some(Role::Animal),
-            KindGroup::Car | KindGroup::Truck | KindGroup::Motorcycle => Vehicle::of(self, told, other).role(),
-            _ => None,
-        }
     }
 
     /// Whether the words for what the partner did name somebody as whom it went round: "pulled out around the taxi".

@@ -1,7 +1,7 @@
-//! Which part somebody in a vehicle has in what the ego does: rules over what is told, and the first that says anything decides.
+//! Which part somebody has in what the ego does. Of who is in a vehicle rules say it over what is told, and the first that says anything decides.
 
 use crate::reading::story::{
-    Story, cuts_in, is_in_turn_lane, is_parked, is_space, is_straight, parks_backwards, stands_in_lane,
+    Story, cuts_in, is_in_turn_lane, is_parked, is_space, is_straight, parks_backwards, stands_in_lane, stays_close,
 };
 use crate::reading::words::{before_contact, span, text};
 use crate::told::crash::Told;
@@ -9,7 +9,8 @@ use crate::told::others::Role;
 use crate::told::queue::sets_off;
 use crate::told::side::{Turning, is_on_foot};
 use recrash_model::account::{
-    Act, ActFact, ContactState, ControlDevice, LeftRight, Origin, Other, PlaceKind, SignalState, Source, StandReason,
+    Act, ActFact, ContactState, ControlDevice, KindGroup, LeftRight, Origin, Other, PlaceKind, SignalState, Source,
+    StandReason,
 };
 use recrash_model::template::Movement;
 
@@ -20,12 +21,41 @@ const BLOCKS_WITHIN: usize = 16;
 const FAR_SIDE: [&str; 4] =
     ["across the intersection", "beyond the intersection", "past the intersection", "far side of the intersection"];
 
+impl Story<'_> {
+    /// The part of somebody; nothing where it has none.
+    pub(super) fn role(&self, told: &Told, other: &Other) -> Option<Role> {
+        // Who throws the partner is drawn there; and who comes afterwards is not.
+        let later = !other.acts.is_empty() && other.acts.iter().all(|fact| fact.after_contact) && !self.is_near(other);
+        if other.touched_partner || later {
+            return None;
+        }
+        match other.kind.value.group() {
+            // Who rides into the ego's lane from beside is in it.
+            KindGroup::Cyclist if before_contact(other).any(|fact| fact.act == Act::LaneChange) => {
+                Vehicle::of(self, told, other).role()
+            }
+            // Who stays at the side of an ego that drives on, and for whom it did nothing, is near alone.
+            KindGroup::OnFoot
+                if told.sv.state == ContactState::Moving && stays_close(other) && !self.is_near(other) =>
+            {
+                None
+            }
+            KindGroup::OnFoot | KindGroup::Cyclist => self.is_met(other).then_some(Role::Walker),
+            KindGroup::Animal => self.is_met(other).then_some(Role::Animal),
+            KindGroup::Car | KindGroup::Truck | KindGroup::Motorcycle => Vehicle::of(self, told, other).role(),
+            _ => None,
+        }
+    }
+}
+
 /// What a rule says of somebody: its part, or that it has none.
 type Verdict = Option<Role>;
+
+/// It has none.
 const NO_PART: Verdict = None;
 
 /// Somebody in a vehicle, and what several rules ask of it.
-pub(super) struct Vehicle<'a> {
+struct Vehicle<'a> {
     story: &'a Story<'a>,
     told: &'a Told,
     other: &'a Other,
@@ -74,7 +104,7 @@ impl<'a> Vehicle<'a> {
     ];
 
     /// Somebody, and what is asked of it.
-    pub(super) fn of(story: &'a Story<'a>, told: &'a Told, other: &'a Other) -> Self {
+    fn of(story: &'a Story<'a>, told: &'a Told, other: &'a Other) -> Self {
         let acts_not = before_contact(other).next().is_none();
         let stands =
             did(other, &[Act::Hold, Act::Stop, Act::Park]) && !did(other, &[Act::SetOff, Act::Follow, Act::Reverse]);
@@ -92,7 +122,7 @@ impl<'a> Vehicle<'a> {
     }
 
     /// Its part; nothing where it has none.
-    pub(super) fn role(&self) -> Option<Role> {
+    fn role(&self) -> Option<Role> {
         Self::RULES.iter().find_map(|rule| rule(self)).unwrap_or_else(|| self.ahead())
     }
 
