@@ -273,29 +273,36 @@ impl<'a> FileReader<'a> {
                 self.begin_part(recognised, span.line);
                 continue;
             }
-            self.rows += 1;
-            if let Some(part) = self.content.sources.last_mut() {
-                part.rows += 1;
-            }
-            let read = self.check_shape(&row, &span).and_then(|()| {
-                row::read(&row, &self.columns, self.name, self.rows, &mut self.notes)
-                    .map_err(|problem| (problem, "give the row as published; nothing of it was used"))
-            });
-            match read {
-                Ok(draft) => self.content.drafts.push(draft),
-                Err((problem, hint)) => {
-                    self.reject(&row, &span, problem, hint);
-                    if let Some(position) = span.next_row_inside(delimiter) {
-                        reread += span.end() - position.byte();
-                        if reread > MOST_REREADS * length {
-                            self.give_up(&span);
-                            break;
-                        }
-                        reader.seek(position)?;
+            if let Err((problem, hint)) = self.read_row(&row, &span) {
+                self.reject(&row, &span, problem, hint);
+                if let Some(position) = span.next_row_inside(delimiter) {
+                    reread += span.end() - position.byte();
+                    if reread > MOST_REREADS * length {
+                        self.give_up(&span);
+                        break;
                     }
+                    reader.seek(position)?;
                 }
             }
         }
+        Ok(self.finish())
+    }
+
+    /// Reads a row of data; else says what is wrong with it, and what to do.
+    fn read_row(&mut self, row: &ByteRecord, span: &Span<'_>) -> Result<(), (String, &'static str)> {
+        self.rows += 1;
+        if let Some(part) = self.content.sources.last_mut() {
+            part.rows += 1;
+        }
+        self.check_shape(row, span)?;
+        let draft = row::read(row, &self.columns, self.name, self.rows, &mut self.notes)
+            .map_err(|problem| (problem, "give the row as published; nothing of it was used"))?;
+        self.content.drafts.push(draft);
+        Ok(())
+    }
+
+    /// What the file holds, with all that is to be said of it.
+    fn finish(mut self) -> FileContent {
         if self.malformed > MOST_MALFORMED_TOLD {
             let message = format!(
                 "{} more rows are malformed; each is rejected by its row number",
@@ -305,7 +312,7 @@ impl<'a> FileReader<'a> {
         }
         self.content.diagnostics.extend(self.notes.diagnostics(self.name));
         self.content.diagnostics.extend(areas::put_right(&mut self.content.drafts, self.name));
-        Ok(self.content)
+        self.content
     }
 
     /// Takes over a header: the first one, or one further down where files were put one after the other.

@@ -91,27 +91,14 @@ pub fn render(suite: &SuiteView) -> String {
     String::from_utf8(writer.into_inner().unwrap_or_default()).expect("made of texts")
 }
 
+/// The row of a run, or of a scenario that was not run.
 fn row(suite: &SuiteView, case: &CaseRow, name: &str, run: Option<&RunRow>) -> Vec<String> {
-    let t = case.template;
-    let cluster = suite.cluster(case);
-    let origin = case.origin.as_ref().map_or("", |origin| origin.name());
     let is_recorded = run.is_some() && case.account.is_some() && name == case.names().before;
-    let mut row = vec![
-        case.scenario_id.clone(),
-        name.to_owned(),
-        t.road.slug().to_owned(),
-        t.sv.slug().to_owned(),
-        t.cp.slug().to_owned(),
-        t.work_zone.to_string(),
-        cluster.map_or_else(String::new, |cluster| cluster.number.to_string()),
-        suite.case_records(case).next().map_or_else(String::new, |record| record.id.to_string()),
-        origin.to_owned(),
-        case.told.as_ref().map_or_else(String::new, ToString::to_string),
-        suite.profile.name.clone(),
-        if is_recorded { "recorded".to_owned() } else { suite.ego.clone() },
-        suite.simulator.clone(),
-        suite.seed.to_string(),
-    ];
+    let mut row = scenario_cells(suite, case, name);
+    row.push(suite.profile.name.clone());
+    row.push(if is_recorded { "recorded".to_owned() } else { suite.ego.clone() });
+    row.push(suite.simulator.clone());
+    row.push(suite.seed.to_string());
     match run {
         // By accounts the recorded driver's run is held against the record, by templates each.
         Some(run) => {
@@ -129,23 +116,8 @@ fn row(suite: &SuiteView, case: &CaseRow, name: &str, run: Option<&RunRow>) -> V
     row.push(case.refused.clone().unwrap_or_default());
     row.push(case.edited.join("; "));
     row.push(run.map_or_else(String::new, |run| run.rerun_command.clone()));
-    let account = case.account.as_ref();
-    row.push(account.map_or_else(String::new, |account| account.incident.clone()));
-    row.push(account.map_or_else(String::new, |account| words::name(&account.crash_type)));
-    row.push(account.and_then(|account| account.role).map_or_else(String::new, |role| words::name(&role)));
-    row.push(
-        run.filter(|_| account.is_some())
-            .and_then(|run| run.situation_met())
-            .map_or_else(String::new, |met| met.to_string()),
-    );
-    let severity = run.and_then(|run| run.severity.as_ref());
-    let number = |value: Option<f64>| value.and_then(|value| fixed(value, 3)).unwrap_or_default();
-    row.push(number(severity.map(|severity| severity.first.delta_v_mps)));
-    row.push(number(severity.map(|severity| severity.second.delta_v_mps)));
-    row.push(number(severity.and_then(Severity::serious_injury)));
-    row.push(run.and_then(|run| run.cause).map_or_else(String::new, |cause| cause.label().to_owned()));
-    let bracket = run.and_then(|run| run.preventability.as_ref()).map(Preventability::bracket);
-    row.push(bracket.map_or_else(String::new, |bracket| bracket.label().to_owned()));
+    row.extend(account_cells(case, run));
+    row.extend(severity_cells(run));
     row.push(run.filter(|_| !is_recorded).map_or_else(String::new, |run| struck_standing(run).to_string()));
     row.push(if is_last { case.found_by_tuning().to_string() } else { String::new() });
     let review = case.review.as_ref().map(|by| &by.review);
@@ -153,6 +125,50 @@ fn row(suite: &SuiteView, case: &CaseRow, name: &str, run: Option<&RunRow>) -> V
     row.push(review.map_or_else(String::new, |review| review.note.clone()));
     row.push(case.changed.as_ref().map_or_else(String::new, |changed| changed.what.clone()));
     row
+}
+
+/// The scenario, its template and whose crash it tells: up to `told_record`.
+fn scenario_cells(suite: &SuiteView, case: &CaseRow, name: &str) -> Vec<String> {
+    let t = case.template;
+    let cluster = suite.cluster(case);
+    vec![
+        case.scenario_id.clone(),
+        name.to_owned(),
+        t.road.slug().to_owned(),
+        t.sv.slug().to_owned(),
+        t.cp.slug().to_owned(),
+        t.work_zone.to_string(),
+        cluster.map_or_else(String::new, |cluster| cluster.number.to_string()),
+        suite.case_records(case).next().map_or_else(String::new, |record| record.id.to_string()),
+        case.origin.as_ref().map_or("", |origin| origin.name()).to_owned(),
+        case.told.as_ref().map_or_else(String::new, ToString::to_string),
+    ]
+}
+
+/// The account, and whether the run came into its situation: `incident` to `situation_met`.
+fn account_cells(case: &CaseRow, run: Option<&RunRow>) -> [String; 4] {
+    let account = case.account.as_ref();
+    let met = run.filter(|_| account.is_some()).and_then(|run| run.situation_met());
+    [
+        account.map_or_else(String::new, |account| account.incident.clone()),
+        account.map_or_else(String::new, |account| words::name(&account.crash_type)),
+        account.and_then(|account| account.role).map_or_else(String::new, |role| words::name(&role)),
+        met.map_or_else(String::new, |met| met.to_string()),
+    ]
+}
+
+/// How hard it was, and what led to it: `ego_delta_v_mps` to `preventability`.
+fn severity_cells(run: Option<&RunRow>) -> [String; 5] {
+    let severity = run.and_then(|run| run.severity.as_ref());
+    let number = |value: Option<f64>| value.and_then(|value| fixed(value, 3)).unwrap_or_default();
+    let bracket = run.and_then(|run| run.preventability.as_ref()).map(Preventability::bracket);
+    [
+        number(severity.map(|severity| severity.first.delta_v_mps)),
+        number(severity.map(|severity| severity.second.delta_v_mps)),
+        number(severity.and_then(Severity::serious_injury)),
+        run.and_then(|run| run.cause).map_or_else(String::new, |cause| cause.label().to_owned()),
+        bracket.map_or_else(String::new, |bracket| bracket.label().to_owned()),
+    ]
 }
 
 /// How the others fared, such as `idm avoids it, 3.20 m; reference does not, 0.00 m`.

@@ -6,6 +6,7 @@ mod actors;
 mod control;
 mod graph;
 mod motion;
+mod names;
 mod numbers;
 mod obstacles;
 mod places;

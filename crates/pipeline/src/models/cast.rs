@@ -86,6 +86,11 @@ impl Cast {
         names.into_iter().filter(|name| *name != RULES).collect()
     }
 
+    /// The model that designs, where one is cast.
+    pub fn designer(&self) -> Option<&str> {
+        Some(self.design.as_str()).filter(|name| *name != RULES)
+    }
+
     /// For the report.
     pub fn describe(&self) -> String {
         let makers = match self.makers().is_empty() {

@@ -1,8 +1,7 @@
 //! The cases of a suite: what the stages after selection share.
 
-use super::design::DesignLog;
+use super::design_log::DesignLog;
 use super::failures;
-use super::restage::designer;
 use crate::error::PipelineError;
 use crate::models::cast::AgentLog;
 use crate::reading::scenarios::read_scenario;
@@ -67,7 +66,7 @@ impl Cases {
                 (Some(suite.store().read_json(names::ACCOUNTS)?), suite.store().read_json(names::ACCOUNT_READERS)?)
             }
         };
-        let staged_by = designer(suite).filter(|_| accounts.is_some());
+        let staged_by = suite.options().cast.designer().filter(|_| accounts.is_some());
         let stagings = staged_by.map(|_| suite.store().read_json(names::STAGED_AGAIN)).transpose()?.unwrap_or_default();
         let reports = places(&records.records, |record| Some(&record.id.report_id));
         let incidents = places(&records.records, |record| record.incident_id.as_ref());

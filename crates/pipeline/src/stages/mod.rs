@@ -8,6 +8,7 @@ mod ahead;
 mod cases;
 mod choices;
 mod design;
+mod design_log;
 mod failures;
 mod invent;
 mod made;
@@ -30,7 +31,7 @@ mod view;
 
 pub(crate) use cases::Cases;
 pub use choices::check_choices;
-pub use design::{DesignAttempt, DesignLog};
+pub use design_log::{DesignAttempt, DesignLog};
 pub use failures::{Failure, unfaithful};
 pub(crate) use restage::question as restage_question;
 pub(crate) use review::Beside;

@@ -1,6 +1,5 @@
 //! The first stage: crash files to records.
 
-use super::restage::designer;
 use super::second_reading::{SecondReading, read_again};
 use super::second_staging::{SecondStaging, stage_again};
 use super::{StageReport, StageWork, cases, own, player};
@@ -51,7 +50,7 @@ pub(super) fn run(work: &StageWork) -> Result<StageReport, PipelineError> {
             stagings = told;
             Ok(made)
         };
-        let stage_again: Option<&mut StageAgain> = designer(suite).is_some().then_some(&mut stage);
+        let stage_again: Option<&mut StageAgain> = suite.options().cast.designer().is_some().then_some(&mut stage);
         let second = Second { reads: suite.options().cast.reads, read_again: &mut again, stage_again };
         let (told, accounts) = tell(value, filter.as_ref(), work.progress, second, suite.stagings())?;
         Ok(vec![
@@ -123,7 +122,7 @@ pub(super) fn inputs(suite: &Suite, input: &RecordInput) -> Vec<String> {
     let cast = &suite.options().cast;
     let reader = by_accounts.then(|| player(suite, &cast.paraphrase));
     // The rules stage what the reader makes of it; a model what they do not show as told.
-    let stager = designer(suite).filter(|_| by_accounts).map(|name| player(suite, name));
+    let stager = suite.options().cast.designer().filter(|_| by_accounts).map(|name| player(suite, name));
     let reads = (by_accounts && cast.reads == Reads::All).then(|| "all".to_owned());
     std::iter::once(cases::text_of(suite.profile()))
         .chain(reader)

@@ -1,11 +1,11 @@
 //! A language model looks at the replay of what the rules staged of an account, and changes the scenario where that does not show the crash
 //! as the reports tell it. What it makes is run and held against the account like the rules' own; where it is never content, theirs stays.
 
-use super::design::{DesignAttempt, DesignLog};
+use super::design_log::{DesignAttempt, DesignLog};
 use super::{Bench, CaseStage, Cases, StageWork, case_inputs, unit_name};
 use crate::error::PipelineError;
 use crate::models::Models;
-use crate::models::cast::{RULES, unusable};
+use crate::models::cast::unusable;
 use crate::progress::ProgressEvent;
 use crate::suite::{Stage, Suite, Work, names};
 use recrash_agents::Brief;
@@ -29,11 +29,6 @@ const ROLLS_S: f64 = 1.0;
 const STANDS_MPS: f64 = 0.1;
 /// Bytes of a first question, about: reports, scenario, replay and the schema.
 const QUESTION_BYTES: usize = 48_000;
-
-/// The model that is cast, where the suite goes by accounts.
-pub(super) fn designer(suite: &Suite) -> Option<&str> {
-    Some(suite.options().cast.design.as_str()).filter(|name| *name != RULES)
-}
 
 /// What the model makes of what the rules staged of a case, and how it came to that; as it is where no model is cast.
 ///
@@ -62,7 +57,7 @@ pub(super) fn looked_at(
     draft: ScenarioDraft,
     log: DesignLog,
 ) -> Result<(ScenarioDraft, DesignLog), PipelineError> {
-    let Some((models, name)) = suite.models().zip(designer(suite)) else { return Ok((draft, log)) };
+    let Some((models, name)) = suite.models().zip(suite.options().cast.designer()) else { return Ok((draft, log)) };
     let (given, of_rules) = rehearse(account, draft.clone(), &[])
         .map_err(|problems| PipelineError::scenario(brief.scenario_id, problems.join("; ")))?;
     let (repairs, attempts) = (Repairs::default(), RefCell::new(log.attempts.clone()));
@@ -209,7 +204,7 @@ pub(super) fn question_cost(models: &Models, name: &str, count: usize) -> String
 /// Says before the first question how many replays are looked at, and what that costs about.
 pub(super) fn tell_cost(work: &StageWork, declared: &CaseStage, cases: &Cases) -> Result<(), PipelineError> {
     let suite = work.suite;
-    let Some((models, name)) = suite.models().zip(designer(suite)) else { return Ok(()) };
+    let Some((models, name)) = suite.models().zip(suite.options().cast.designer()) else { return Ok(()) };
     let clusters = cases.up_to(suite, Stage::Design);
     let is_open = |cluster: &&Cluster| -> Result<bool, PipelineError> {
         let id = &cluster.scenario_id;

@@ -3,6 +3,7 @@
 
 use super::ahead::Ahead;
 use super::cases::{case_seed, of_case, scenario, text_of};
+use super::design_log::{DesignAttempt, DesignLog};
 use super::restage::restaged;
 use super::tune::tune_options;
 use super::{Bench, CaseStage, player};
@@ -11,7 +12,6 @@ use crate::files::json::{to_compact_json, to_json};
 use crate::models::cast::AgentLog;
 use crate::reading::retelling::{Staged, what_is_missed};
 use crate::simulators::{Simulator, built_in};
-use crate::stages::design::{DesignAttempt, DesignLog};
 use crate::suite::names;
 use crate::suite::{Files, Stage, Suite};
 use recrash_drivers::preventability;

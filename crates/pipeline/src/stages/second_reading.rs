@@ -1,6 +1,5 @@
 //! A language model reads what the built-in reader did not read whole, or everything, in a suite that goes by accounts.
 
-use super::restage::designer;
 use crate::error::PipelineError;
 use crate::models::cast::{AgentLog, RULES, Reads, reading_brief, unusable};
 use crate::progress::{Progress, ProgressEvent};
@@ -69,7 +68,7 @@ pub(super) fn read_again(
 
     let stage = "read";
     progress.event(ProgressEvent::Started { stage, units: unread.len() });
-    let stages = designer(suite).is_some();
+    let stages = suite.options().cast.designer().is_some();
     let one = |each: &Unread| -> Result<(Option<Account>, AgentLog), PipelineError> {
         let repairs = Repairs::default();
         let mut answer = None;

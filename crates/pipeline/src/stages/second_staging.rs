@@ -1,8 +1,8 @@
 //! A language model stages the crashes that the rules do not show as they are told, in a suite that goes by accounts: it is given what there
 //! is of them, and changes that until no told fact is missed.
 
-use super::design::{DesignAttempt, DesignLog};
-use super::restage::{as_staged, designer, looked_at, question_cost};
+use super::design_log::{DesignAttempt, DesignLog};
+use super::restage::{as_staged, looked_at, question_cost};
 use crate::error::PipelineError;
 use crate::models::cast::reading_brief;
 use crate::progress::{Progress, ProgressEvent};
@@ -35,7 +35,9 @@ pub(super) fn stage_again(
     unstaged: &[Unstaged],
     progress: &dyn Progress,
 ) -> Result<SecondStaging, PipelineError> {
-    let Some((models, name)) = suite.models().zip(designer(suite)) else { return Ok(SecondStaging::default()) };
+    let Some((models, name)) = suite.models().zip(suite.options().cast.designer()) else {
+        return Ok(SecondStaging::default());
+    };
     if unstaged.is_empty() {
         return Ok(SecondStaging::default());
     }

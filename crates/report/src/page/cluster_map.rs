@@ -4,7 +4,7 @@ use super::Context;
 use crate::view::SuiteView;
 use crate::words::{self, fixed, thousands};
 use maud::{Markup, html};
-use recrash_model::selection::MapPoint;
+use recrash_model::selection::{MapPoint, Selection};
 use recrash_model::template::Template;
 
 const WIDTH: f64 = 760.0;
@@ -68,15 +68,6 @@ pub fn map(context: &Context) -> Markup {
     if points.iter().filter(|point| point.x.is_finite() && point.y.is_finite()).count() == 0 {
         return html! { p.empty { "No record has a place on the map." } };
     }
-    let layout = Layout::of(&points, |point| picks <= MOST_LABELS && is_pick(context.suite, point));
-    let order = |template: Option<Template>| {
-        selection
-            .templates
-            .iter()
-            .position(|count| Some(count.template) == template)
-            .unwrap_or(selection.templates.len())
-    };
-    let template_of = |point: &MapPoint| order(context.suite.records.records[point.record].template());
     let embedding = &selection.embedding;
     html! {
         p.muted {
@@ -88,38 +79,62 @@ pub fn map(context: &Context) -> Markup {
             "Point at a mark, or put the focus on the map and use the arrow keys."
         }
         .map-grid {
-            svg #map viewBox={ "0 0 " (WIDTH) " " (HEIGHT) } role="application" tabindex="0" aria-label="Map of the records; arrow keys go from mark to mark" aria-describedby="map-detail" {
-                defs { @for (shape, path) in SHAPES.iter().enumerate() { path id={ "mark-" (shape) } d=(path) {} } }
-                @for (index, point) in points.iter().enumerate() {
-                    @let t = template_of(point);
-                    @let (x, y) = layout.marks[index];
-                    use.mark.{ "c" (t % COLOURS) } href={ "#mark-" (t % SHAPES.len()) } x=(text(x)) y=(text(y)) data-point=(index) data-template=(t) {}
-                }
-                @for (index, point) in points.iter().enumerate() {
-                    @let cluster = &selection.clusters[point.cluster];
-                    @if cluster.pick_index == point.record {
-                        @let ((mx, my), (x, y)) = (layout.marks[index], layout.labels[index]);
-                        @if (mx - x).abs() + (my - y).abs() > 4.0 { line.leader x1=(text(mx)) y1=(text(my)) x2=(text(x)) y2=(text(y)) {} }
-                        g.pick data-point=(index) data-template=(template_of(point)) transform={ "translate(" (text(x)) " " (text(y)) ")" } {
-                            @if picks <= MOST_LABELS {
-                                circle.{ "c" (template_of(point) % COLOURS) } r="10" {}
-                                text y="3.6" text-anchor="middle" { (cluster.number) }
-                            } @else { circle.{ "c" (template_of(point) % COLOURS) } r="5" {} }
-                        }
-                    }
-                }
-                circle #map-ring r="12" cx="-50" cy="-50" {}
-            }
+            (picture(context, &points, picks <= MOST_LABELS))
             .map-side {
                 #map-detail.map-detail role="status" aria-live="polite" { p.muted { "No record chosen." } }
-                ul.legend aria-label="Templates" {
-                    @for (t, count) in selection.templates.iter().enumerate() {
-                        li { button type="button" data-template=(t) aria-pressed="false" {
-                            svg.icon viewBox="-6 -6 12 12" aria-hidden="true" { path.{ "c" (t % COLOURS) } d=(SHAPES[t % SHAPES.len()]) {} }
-                            span { (words::template(&count.template)) } span.muted { " " (count.records) }
-                        } }
+                (legend(selection))
+            }
+        }
+    }
+}
+
+/// The marks of the records, and over them those of the picks, with their numbers where there is room.
+fn picture(context: &Context, points: &[&MapPoint], numbered: bool) -> Markup {
+    let selection = &context.suite.selection;
+    let layout = Layout::of(points, |point| numbered && is_pick(context.suite, point));
+    let order = |template: Option<Template>| {
+        selection
+            .templates
+            .iter()
+            .position(|count| Some(count.template) == template)
+            .unwrap_or(selection.templates.len())
+    };
+    let template_of = |point: &MapPoint| order(context.suite.records.records[point.record].template());
+    html! {
+        svg #map viewBox={ "0 0 " (WIDTH) " " (HEIGHT) } role="application" tabindex="0" aria-label="Map of the records; arrow keys go from mark to mark" aria-describedby="map-detail" {
+            defs { @for (shape, path) in SHAPES.iter().enumerate() { path id={ "mark-" (shape) } d=(path) {} } }
+            @for (index, point) in points.iter().enumerate() {
+                @let t = template_of(point);
+                @let (x, y) = layout.marks[index];
+                use.mark.{ "c" (t % COLOURS) } href={ "#mark-" (t % SHAPES.len()) } x=(text(x)) y=(text(y)) data-point=(index) data-template=(t) {}
+            }
+            @for (index, point) in points.iter().enumerate() {
+                @let cluster = &selection.clusters[point.cluster];
+                @if cluster.pick_index == point.record {
+                    @let ((mx, my), (x, y)) = (layout.marks[index], layout.labels[index]);
+                    @if (mx - x).abs() + (my - y).abs() > 4.0 { line.leader x1=(text(mx)) y1=(text(my)) x2=(text(x)) y2=(text(y)) {} }
+                    g.pick data-point=(index) data-template=(template_of(point)) transform={ "translate(" (text(x)) " " (text(y)) ")" } {
+                        @if numbered {
+                            circle.{ "c" (template_of(point) % COLOURS) } r="10" {}
+                            text y="3.6" text-anchor="middle" { (cluster.number) }
+                        } @else { circle.{ "c" (template_of(point) % COLOURS) } r="5" {} }
                     }
                 }
+            }
+            circle #map-ring r="12" cx="-50" cy="-50" {}
+        }
+    }
+}
+
+/// The marks of the templates.
+fn legend(selection: &Selection) -> Markup {
+    html! {
+        ul.legend aria-label="Templates" {
+            @for (t, count) in selection.templates.iter().enumerate() {
+                li { button type="button" data-template=(t) aria-pressed="false" {
+                    svg.icon viewBox="-6 -6 12 12" aria-hidden="true" { path.{ "c" (t % COLOURS) } d=(SHAPES[t % SHAPES.len()]) {} }
+                    span { (words::template(&count.template)) } span.muted { " " (count.records) }
+                } }
             }
         }
     }

@@ -53,46 +53,14 @@ pub fn metrics(case: Case) -> Markup {
     if runs.is_empty() {
         return html! { p.empty { "It was not run." } };
     }
-    let ids: Vec<(usize, &str)> = partner_ids(&runs);
     html! {
         .columns {
             div {
                 .table-wrap { table.plain {
                     caption.hidden-text { "Metrics, run by run" }
                     thead { tr { th scope="col" { "Metric" } @for (name, _) in &runs { th scope="col" { (words::capital(name)) } } } }
-                    tbody {
-                        (line("Ended by", &runs, |run| html! { (run.metrics.termination.label()) span.at { " at " } (parts::quantity(Some(run.metrics.duration_s), 1, "s", "")) }))
-                        (line("Contact", &runs, |run| match &run.metrics.contact {
-                            Some(c) => html! { (c.kind.label()) " with " (words::clean(&c.id, 40)) span.at { " at " } (parts::quantity(Some(c.time_s), 2, "s", "")) },
-                            None => parts::missing("no contact with a road user"),
-                        }))
-                        (line("Contact speeds", &runs, |run| match &run.metrics.contact {
-                            Some(c) => html! {
-                                "ego " (parts::quantity(Some(c.ego_speed_mps), 1, "m/s", "")) ", other " (parts::quantity(Some(c.other_speed_mps), 1, "m/s", ""))
-                                ", relative " (parts::quantity(Some(c.relative_speed_mps), 1, "m/s", ""))
-                            },
-                            None => parts::missing("no contact"),
-                        }))
-                        (line("Ego: hardest braking", &runs, |run| parts::timed(Some(run.metrics.ego.max_deceleration), 1, "m/s\u{b2}", "")))
-                        (line("Ego: braking with nothing in the way", &runs, |run| parts::timed(run.metrics.ego.phantom_braking, 1, "m/s\u{b2}", "it never did")))
-                        (line("Ego: reversals in the window", &runs, |run| html! { (run.metrics.ego.max_reversals) }))
-                        (line("Ego: farthest beyond its lane", &runs, |run| parts::timed(Some(run.metrics.ego.max_lane_departure), 2, "m", "")))
-                        (line("Ego: mean speed", &runs, |run| parts::quantity(Some(run.metrics.ego.mean_speed_mps), 1, "m/s", "")))
-                        (line("Ego: distance", &runs, |run| parts::quantity(Some(run.metrics.ego.distance_m), 1, "m", "")))
-                        (line("Obstacles touched", &runs, |run| html! { (run.metrics.obstacles_hit.len()) span.muted { " of " (run.metrics.obstacle_gaps.len()) } }))
-                    }
-                    @for (actor, id) in ids {
-                        tbody {
-                            tr.group { th scope="rowgroup" colspan=(1 + runs.len()) { "Ego and " (words::clean(id, 40)) } }
-                            (partner_line("Least box gap", &runs, actor, |p| parts::timed(Some(p.min_gap), 2, "m", "")))
-                            (partner_line("Least distance of the centres", &runs, actor, |p| parts::timed(Some(p.min_centre_distance), 2, "m", "")))
-                            (partner_line("Least TTC", &runs, actor, |p| parts::timed(p.min_ttc, 2, "s", "they were never on a course to touch")))
-                            (partner_line("PET", &runs, actor, |p| parts::timed(p.pet, 2, "s", "no place was crossed by both, one after the other")))
-                            (partner_line("Greatest DRAC", &runs, actor, |p| parts::timed(p.max_drac, 1, "m/s\u{b2}", "the ego did not close in on it from behind")))
-                            (partner_line("Greatest required deceleration", &runs, actor, |p| parts::timed(p.max_required_deceleration, 1, "m/s\u{b2}", "the ego did not follow it, or had no need to brake for it")))
-                            (partner_line("Least time headway", &runs, actor, |p| parts::timed(p.min_headway, 2, "s", "the ego did not follow it")))
-                        }
-                    }
+                    tbody { (ego_lines(&runs)) }
+                    @for (actor, id) in partner_ids(&runs) { tbody { (partner_lines(&runs, actor, id)) } }
                 } }
             }
             div {
@@ -108,6 +76,45 @@ pub fn metrics(case: Case) -> Markup {
                 }
             }
         }
+    }
+}
+
+/// How each run ended, and how the ego drove.
+fn ego_lines(runs: &[(&str, &RunView)]) -> Markup {
+    html! {
+        (line("Ended by", runs, |run| html! { (run.metrics.termination.label()) span.at { " at " } (parts::quantity(Some(run.metrics.duration_s), 1, "s", "")) }))
+        (line("Contact", runs, |run| match &run.metrics.contact {
+            Some(c) => html! { (c.kind.label()) " with " (words::clean(&c.id, 40)) span.at { " at " } (parts::quantity(Some(c.time_s), 2, "s", "")) },
+            None => parts::missing("no contact with a road user"),
+        }))
+        (line("Contact speeds", runs, |run| match &run.metrics.contact {
+            Some(c) => html! {
+                "ego " (parts::quantity(Some(c.ego_speed_mps), 1, "m/s", "")) ", other " (parts::quantity(Some(c.other_speed_mps), 1, "m/s", ""))
+                ", relative " (parts::quantity(Some(c.relative_speed_mps), 1, "m/s", ""))
+            },
+            None => parts::missing("no contact"),
+        }))
+        (line("Ego: hardest braking", runs, |run| parts::timed(Some(run.metrics.ego.max_deceleration), 1, "m/s\u{b2}", "")))
+        (line("Ego: braking with nothing in the way", runs, |run| parts::timed(run.metrics.ego.phantom_braking, 1, "m/s\u{b2}", "it never did")))
+        (line("Ego: reversals in the window", runs, |run| html! { (run.metrics.ego.max_reversals) }))
+        (line("Ego: farthest beyond its lane", runs, |run| parts::timed(Some(run.metrics.ego.max_lane_departure), 2, "m", "")))
+        (line("Ego: mean speed", runs, |run| parts::quantity(Some(run.metrics.ego.mean_speed_mps), 1, "m/s", "")))
+        (line("Ego: distance", runs, |run| parts::quantity(Some(run.metrics.ego.distance_m), 1, "m", "")))
+        (line("Obstacles touched", runs, |run| html! { (run.metrics.obstacles_hit.len()) span.muted { " of " (run.metrics.obstacle_gaps.len()) } }))
+    }
+}
+
+/// How near the ego and a partner came to each other.
+fn partner_lines(runs: &[(&str, &RunView)], actor: usize, id: &str) -> Markup {
+    html! {
+        tr.group { th scope="rowgroup" colspan=(1 + runs.len()) { "Ego and " (words::clean(id, 40)) } }
+        (partner_line("Least box gap", runs, actor, |p| parts::timed(Some(p.min_gap), 2, "m", "")))
+        (partner_line("Least distance of the centres", runs, actor, |p| parts::timed(Some(p.min_centre_distance), 2, "m", "")))
+        (partner_line("Least TTC", runs, actor, |p| parts::timed(p.min_ttc, 2, "s", "they were never on a course to touch")))
+        (partner_line("PET", runs, actor, |p| parts::timed(p.pet, 2, "s", "no place was crossed by both, one after the other")))
+        (partner_line("Greatest DRAC", runs, actor, |p| parts::timed(p.max_drac, 1, "m/s\u{b2}", "the ego did not close in on it from behind")))
+        (partner_line("Greatest required deceleration", runs, actor, |p| parts::timed(p.max_required_deceleration, 1, "m/s\u{b2}", "the ego did not follow it, or had no need to brake for it")))
+        (partner_line("Least time headway", runs, actor, |p| parts::timed(p.min_headway, 2, "s", "the ego did not follow it")))
     }
 }
 

@@ -3,7 +3,7 @@
 use crate::suite::{self, Demo};
 use recrash_model::metrics::Timed;
 use recrash_model::narrative::{FactSource, Origin};
-use recrash_model::record::Coded;
+use recrash_model::record::{Coded, RecordRef};
 use recrash_model::review::{Review, ReviewBy, Shown};
 use recrash_model::run::Judgement;
 use recrash_report::{
@@ -24,6 +24,21 @@ pub(super) fn wrong(model: &str, note: &str) -> ReviewBy {
 fn hostile() -> Demo {
     let Demo { mut suite, mut driven } = suite::demo();
     let long = format!("{HOSTILE} {}", "a ".repeat(50_000));
+    spoil_suite(&mut suite, &long);
+    let ids: Vec<_> = suite.records.records.iter().map(|record| record.id.clone()).collect();
+    for (number, row) in suite.cases.iter_mut().enumerate() {
+        row.scenario_id = format!("{HOSTILE}{number}");
+        row.told = Some(ids[row.records[0]].clone());
+        spoil_row(row, &long);
+    }
+    for (case, row) in driven.iter_mut().zip(&suite.cases) {
+        spoil_case(case, &ids[row.records[0]], &long);
+    }
+    Demo { suite, driven }
+}
+
+/// Everything of a suite but its scenarios.
+fn spoil_suite(suite: &mut SuiteView, long: &str) {
     for text in [
         &mut suite.title,
         &mut suite.generated_by,
@@ -50,7 +65,7 @@ fn hostile() -> Demo {
         for text in [&mut record.entity, &mut record.vehicle, &mut record.place, &mut record.provenance.file] {
             *text = HOSTILE.to_owned();
         }
-        record.narrative = long.clone();
+        record.narrative = long.to_owned();
         record.incident_id = Some(HOSTILE.to_owned());
         record.partner = Coded::Unlisted(HOSTILE.to_owned());
     }
@@ -60,46 +75,43 @@ fn hostile() -> Demo {
         diagnostic.hint = HOSTILE.to_owned();
         diagnostic.location.file = Some(HOSTILE.to_owned());
     }
-    let ids: Vec<_> = suite.records.records.iter().map(|record| record.id.clone()).collect();
-    for (number, row) in suite.cases.iter_mut().enumerate() {
-        row.scenario_id = format!("{HOSTILE}{number}");
-        row.refused = Some(HOSTILE.to_owned());
-        row.narrative = long.clone();
-        row.origin = Some(Origin::Invented { reason: HOSTILE.to_owned() });
-        row.told = Some(ids[row.records[0]].clone());
-        row.edited = vec![HOSTILE.to_owned()];
-        row.review = Some(wrong(HOSTILE, &long));
-        for run in row.before.iter_mut().chain(&mut row.after) {
-            run.rerun_command = HOSTILE.to_owned();
-            spoil_judgement(&mut run.judgement);
+}
+
+fn spoil_row(row: &mut CaseRow, long: &str) {
+    row.refused = Some(HOSTILE.to_owned());
+    row.narrative = long.to_owned();
+    row.origin = Some(Origin::Invented { reason: HOSTILE.to_owned() });
+    row.edited = vec![HOSTILE.to_owned()];
+    row.review = Some(wrong(HOSTILE, long));
+    for run in row.before.iter_mut().chain(&mut row.after) {
+        run.rerun_command = HOSTILE.to_owned();
+        spoil_judgement(&mut run.judgement);
+    }
+}
+
+fn spoil_case(case: &mut CaseView, told: &RecordRef, long: &str) {
+    case.refused = Some(HOSTILE.to_owned());
+    let narrative = case.narrative.as_mut().unwrap();
+    narrative.text = long.to_owned();
+    narrative.origin = Origin::Invented { reason: HOSTILE.to_owned() };
+    for fact in &mut narrative.facts {
+        fact.source = FactSource::Words { record: told.clone(), words: "onerror=alert(1)".to_owned() };
+    }
+    for run in [&mut case.before, &mut case.after].into_iter().flatten() {
+        spoil_run(run);
+    }
+    if let Some(log) = &mut case.tune_log {
+        log.searcher = HOSTILE.to_owned();
+        for parameter in &mut log.parameters {
+            parameter.pointer = HOSTILE.to_owned();
+            parameter.unit = HOSTILE.to_owned();
+            parameter.reason = HOSTILE.to_owned();
+        }
+        for point in &mut log.points {
+            point.proposed_by = HOSTILE.to_owned();
+            point.score.refused = vec![HOSTILE.to_owned()];
         }
     }
-    for (case, row) in driven.iter_mut().zip(&suite.cases) {
-        case.refused = Some(HOSTILE.to_owned());
-        let narrative = case.narrative.as_mut().unwrap();
-        narrative.text = long.clone();
-        narrative.origin = Origin::Invented { reason: HOSTILE.to_owned() };
-        for fact in &mut narrative.facts {
-            fact.source =
-                FactSource::Words { record: ids[row.records[0]].clone(), words: "onerror=alert(1)".to_owned() };
-        }
-        for run in [&mut case.before, &mut case.after].into_iter().flatten() {
-            spoil_run(run);
-        }
-        if let Some(log) = &mut case.tune_log {
-            log.searcher = HOSTILE.to_owned();
-            for parameter in &mut log.parameters {
-                parameter.pointer = HOSTILE.to_owned();
-                parameter.unit = HOSTILE.to_owned();
-                parameter.reason = HOSTILE.to_owned();
-            }
-            for point in &mut log.points {
-                point.proposed_by = HOSTILE.to_owned();
-                point.score.refused = vec![HOSTILE.to_owned()];
-            }
-        }
-    }
-    Demo { suite, driven }
 }
 
 fn spoil_run(run: &mut RunView) {

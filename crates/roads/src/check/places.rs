@@ -1,5 +1,6 @@
 //! Ways: which lanes each road user follows, and who stands in the way of whom at the start.
 
+use super::names::{APPROACHES, TURNS, approach_name, map_name, turn_name};
 use super::remarks::{Remarks, shown};
 use super::starts::Entry;
 use crate::network::RoadNetwork;
@@ -7,7 +8,7 @@ use crate::path::LanePath;
 use crate::scenario::{ActorPlacement, ObstaclePlacement, Placement};
 use recrash_model::geometry::OrientedBox;
 use recrash_model::kinds::PartnerKind;
-use recrash_model::scenario::{Approach, MapSpec, Partner, ScenarioDraft, Turn};
+use recrash_model::scenario::{Approach, Partner, ScenarioDraft};
 use recrash_model::vehicle::VehicleSpec;
 
 /// Free space between the boxes of two road users at the start, at least. [m]
@@ -15,19 +16,6 @@ const SPAWN_GAP_M: f64 = 0.5;
 
 /// Free space between a road user's box and an obstacle at the start, at least. [m]
 const OBSTACLE_SPAWN_GAP_M: f64 = 0.2;
-
-/// Every approach and its name in a scenario file.
-const APPROACHES: [(Approach, &str); 5] = [
-    (Approach::Same, "same"),
-    (Approach::Opposite, "opposite"),
-    (Approach::Left, "left"),
-    (Approach::Right, "right"),
-    (Approach::Ring, "ring"),
-];
-
-/// Every turn and its name in a scenario file.
-pub(super) const TURNS: [(Turn, &str); 3] =
-    [(Turn::Straight, "straight"), (Turn::Left, "left"), (Turn::Right, "right")];
 
 /// The ego's placement.
 pub(super) fn ego(draft: &ScenarioDraft, network: &RoadNetwork, remarks: &mut Remarks) -> Option<Placement> {
@@ -225,25 +213,4 @@ fn turns_of(network: &RoadNetwork, approach: Approach) -> String {
     let found: Vec<&str> =
         TURNS.iter().filter(|(turn, _)| network.route(approach, *turn).is_some()).map(|(_, name)| *name).collect();
     found.join(", ")
-}
-
-/// The name of an approach in a scenario file.
-pub(super) fn approach_name(approach: Approach) -> &'static str {
-    APPROACHES.iter().find(|(each, _)| *each == approach).map_or("", |(_, name)| name)
-}
-
-/// The name of a turn in a scenario file.
-pub(super) fn turn_name(turn: Turn) -> &'static str {
-    TURNS.iter().find(|(each, _)| *each == turn).map_or("", |(_, name)| name)
-}
-
-fn map_name(map: &MapSpec) -> &'static str {
-    match map {
-        MapSpec::S(_) => "a straight road (map S)",
-        MapSpec::C(_) => "a curve (map C)",
-        MapSpec::X(_) => "a four-way intersection (map X)",
-        MapSpec::T(_) => "this three-way intersection (map T)",
-        MapSpec::O(_) => "a roundabout (map O)",
-        MapSpec::G(_) => "a network of roads (map G)",
-    }
 }

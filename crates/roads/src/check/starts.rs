@@ -1,6 +1,6 @@
 //! Where on its way a partner begins: relative to the ego, or by when it reaches the place where their ways meet.
 
-use super::places::{TURNS, approach_name, turn_name};
+use super::names::{TURNS, approach_name, turn_name};
 use super::remarks::{Remarks, shown};
 use crate::conflict::Conflict;
 use crate::network::{RoadNetwork, RoadPart};

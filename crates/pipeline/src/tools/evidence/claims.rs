@@ -20,6 +20,16 @@ pub fn all(
     reports: &BTreeMap<&'static str, Value>,
 ) -> Vec<Claim> {
     let mut all = Structure::new(numbers);
+    suite(&mut all, runs, profile);
+    each_test(&mut all);
+    groups(&mut all, runs);
+    tools(&mut all, reports);
+    corpus::claims(&mut all, reports.contains_key(corpus::NAME));
+    all.claims()
+}
+
+/// What is claimed of the suite, and in which context.
+fn suite(all: &mut Structure, runs: &Runs, profile: &SystemProfile) {
     let (ego, simulator, suite) = (plain(&runs.ego), plain(&runs.simulator), &runs.suite);
     all.add(
         "G1",
@@ -51,6 +61,10 @@ pub fn all(
         &[],
         &[],
     );
+}
+
+/// Every test by itself, and what the share of failed ones says.
+fn each_test(all: &mut Structure) {
     all.add("S1", "strategy", "Over every test by itself: its verdict follows from its rollout.", &["G2", "G3"], &[]);
     all.add(
         "G2",
@@ -74,10 +88,6 @@ pub fn all(
         &["Sn1"],
         &[],
     );
-    groups(&mut all, runs);
-    tools(&mut all, reports);
-    corpus::claims(&mut all, reports.contains_key(corpus::NAME));
-    all.claims()
 }
 
 /// Failures by crash type, by whose crash it is, by cause, and whether good drivers avoid them.

@@ -339,81 +339,77 @@ impl Report {
     }
 
     fn cells(&self, columns: &[&str]) -> Vec<String> {
+        let cell = |column: &&str| self.ticked(column).map_or_else(|| self.cell(column), tick);
+        columns.iter().map(cell).collect()
+    }
+
+    /// Whether a column of contact areas or of the weather is ticked; nothing of the other columns.
+    fn ticked(&self, column: &str) -> Option<bool> {
+        let zone = |zones: &[ContactZone], name: &str| zones.iter().any(|zone| zone.label() == name.to_lowercase());
+        if let Some(name) = column.strip_prefix("SV Contact Area - ") {
+            return Some(zone(self.sv_zones, name));
+        }
+        if let Some(name) = column.strip_prefix("CP Contact Area - ") {
+            return Some(if name == "Unknown" { self.cp_zones.is_empty() } else { zone(self.cp_zones, name) });
+        }
+        column.starts_with("Weather - ").then_some(column == self.weather)
+    }
+
+    fn cell(&self, column: &str) -> String {
         let month = |month: usize, year: u32| format!("{}-{year}", MONTHS[month][..3].to_uppercase());
         let next = (self.month + 1) % 12;
         let next_year = if next == 0 { self.year + 1 } else { self.year };
-        let tick = |yes: bool| if yes { "Y".to_owned() } else { String::new() };
-        let zone =
-            |zones: &[ContactZone], name: &str| tick(zones.iter().any(|zone| zone.label() == name.to_lowercase()));
+        let monthly = |number: usize| if self.report_type == "Monthly" { number.to_string() } else { String::new() };
         let redacted = self.narrative.contains(REDACTED);
-        let cell = |column: &str| -> String {
-            if let Some(name) = column.strip_prefix("SV Contact Area - ") {
-                return zone(self.sv_zones, name);
-            }
-            if let Some(name) = column.strip_prefix("CP Contact Area - ") {
-                return if name == "Unknown" { tick(self.cp_zones.is_empty()) } else { zone(self.cp_zones, name) };
-            }
-            if column.starts_with("Weather - ") {
-                return tick(column == self.weather);
-            }
-            match column {
-                "Report ID" => self.report_id(),
-                "Report Version" => self.version.to_string(),
-                "Reporting Entity" => self.filed_by.0.to_owned(),
-                "Report Type" => self.report_type.to_owned(),
-                "Report Month" => {
-                    if self.report_type == "Monthly" {
-                        (next + 1).to_string()
-                    } else {
-                        String::new()
-                    }
-                }
-                "Report Year" => {
-                    if self.report_type == "Monthly" {
-                        next_year.to_string()
-                    } else {
-                        String::new()
-                    }
-                }
-                "Report Submission Date" => month(next, next_year),
-                "VIN - Unknown" | "Mileage - Unknown" => "Y".to_owned(),
-                "Serial Number" => "N/A".to_owned(),
-                "Make" => self.entity.make.to_owned(),
-                "Model" => self.entity.model.to_owned(),
-                "Model Year" => (self.year - 1).to_string(),
-                "Driver / Operator Type" => self.entity.driver.to_owned(),
-                "ADS Equipped?" => "Yes".to_owned(),
-                "Automation System Engaged?" => "ADS".to_owned(),
-                "Operating Entity" => self.operator.to_owned(),
-                "Source - Telematics" | "Data Availability - Video" => "Y".to_owned(),
-                "Incident Date" | "Notice Received Date" => month(self.month, self.year),
-                "Incident Time (24:00)" => format!("{:02}:{:02}", self.minute / 60, self.minute % 60),
-                "Same Incident ID" => self.incident.clone(),
-                "Latitude" | "Longitude" | "Address" | "Zip Code" => PERSONAL.to_owned(),
-                "City" => self.city.to_owned(),
-                // Published with a blank behind it.
-                "State" => format!("{} ", self.state),
-                "Roadway Type" => road(self.road).to_owned(),
-                "Roadway Surface" => if self.wet { "Wet" } else { "Dry" }.to_owned(),
-                "Roadway Description" => if self.work_zone { "Work Zone" } else { "No Unusual Conditions" }.to_owned(),
-                "Posted Speed Limit (MPH)" => self.posted_mph.to_string(),
-                "Lighting" => self.lighting.to_owned(),
-                "Crash With" => self.partner.0.to_owned(),
-                "Highest Injury Severity Alleged" => self.severity.to_owned(),
-                "Property Damage?" => "Yes".to_owned(),
-                "CP Pre-Crash Movement" => self.cp.map_or("Other, see Narrative", movement).to_owned(),
-                "SV Pre-Crash Movement" => movement(self.sv).to_owned(),
-                "SV Any Air Bags Deployed?" | "CP Any Air Bags Deployed?" => "No".to_owned(),
-                "SV Precrash Speed (MPH)" => self.sv_mph.map(|mph| mph.to_string()).unwrap_or_default(),
-                "SV Pre-crash Speed - Unknown" => tick(self.sv_mph.is_none()),
-                "Within ODD?" => if redacted { REDACTED } else { "Yes" }.to_owned(),
-                "Narrative" => self.narrative.clone(),
-                "Narrative - CBI?" => tick(redacted),
-                _ => String::new(),
-            }
-        };
-        columns.iter().map(|column| cell(column)).collect()
+        match column {
+            "Report ID" => self.report_id(),
+            "Report Version" => self.version.to_string(),
+            "Reporting Entity" => self.filed_by.0.to_owned(),
+            "Report Type" => self.report_type.to_owned(),
+            "Report Month" => monthly(next + 1),
+            "Report Year" => monthly(next_year as usize),
+            "Report Submission Date" => month(next, next_year),
+            "VIN - Unknown" | "Mileage - Unknown" => "Y".to_owned(),
+            "Serial Number" => "N/A".to_owned(),
+            "Make" => self.entity.make.to_owned(),
+            "Model" => self.entity.model.to_owned(),
+            "Model Year" => (self.year - 1).to_string(),
+            "Driver / Operator Type" => self.entity.driver.to_owned(),
+            "ADS Equipped?" => "Yes".to_owned(),
+            "Automation System Engaged?" => "ADS".to_owned(),
+            "Operating Entity" => self.operator.to_owned(),
+            "Source - Telematics" | "Data Availability - Video" => "Y".to_owned(),
+            "Incident Date" | "Notice Received Date" => month(self.month, self.year),
+            "Incident Time (24:00)" => format!("{:02}:{:02}", self.minute / 60, self.minute % 60),
+            "Same Incident ID" => self.incident.clone(),
+            "Latitude" | "Longitude" | "Address" | "Zip Code" => PERSONAL.to_owned(),
+            "City" => self.city.to_owned(),
+            // Published with a blank behind it.
+            "State" => format!("{} ", self.state),
+            "Roadway Type" => road(self.road).to_owned(),
+            "Roadway Surface" => if self.wet { "Wet" } else { "Dry" }.to_owned(),
+            "Roadway Description" => if self.work_zone { "Work Zone" } else { "No Unusual Conditions" }.to_owned(),
+            "Posted Speed Limit (MPH)" => self.posted_mph.to_string(),
+            "Lighting" => self.lighting.to_owned(),
+            "Crash With" => self.partner.0.to_owned(),
+            "Highest Injury Severity Alleged" => self.severity.to_owned(),
+            "Property Damage?" => "Yes".to_owned(),
+            "CP Pre-Crash Movement" => self.cp.map_or("Other, see Narrative", movement).to_owned(),
+            "SV Pre-Crash Movement" => movement(self.sv).to_owned(),
+            "SV Any Air Bags Deployed?" | "CP Any Air Bags Deployed?" => "No".to_owned(),
+            "SV Precrash Speed (MPH)" => self.sv_mph.map(|mph| mph.to_string()).unwrap_or_default(),
+            "SV Pre-crash Speed - Unknown" => tick(self.sv_mph.is_none()),
+            "Within ODD?" => if redacted { REDACTED } else { "Yes" }.to_owned(),
+            "Narrative" => self.narrative.clone(),
+            "Narrative - CBI?" => tick(redacted),
+            _ => String::new(),
+        }
     }
+}
+
+/// A cell of a column that is ticked or not.
+fn tick(yes: bool) -> String {
+    if yes { "Y".to_owned() } else { String::new() }
 }
 
 /// A row that says that there is nothing to report.
