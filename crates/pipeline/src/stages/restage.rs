@@ -62,7 +62,9 @@ pub(super) fn looked_at(
         .map_err(|problems| PipelineError::scenario(brief.scenario_id, problems.join("; ")))?;
     let (repairs, attempts) = (Repairs::default(), RefCell::new(log.attempts.clone()));
     let shown: Vec<Check> = given.checks.iter().filter(|check| check.result == CheckResult::Shown).cloned().collect();
-    let stage = |draft: ScenarioDraft| {
+    let stage = |mut draft: ScenarioDraft| {
+        // When the system takes over is computed from the run, which may be a shorter one now.
+        draft.ego.handover_s = given.draft.ego.handover_s.map(|time_s| time_s.min(draft.duration_s));
         let (mut staged, rollout) = rehearse(account, draft, &shown)?;
         hand_over(&mut staged.draft.ego, &rollout, (&given.draft.ego, &of_rules));
         let (draft, unfaithful) = (staged.draft.clone(), Some(staged.missed.clone()));

@@ -2,7 +2,7 @@
 
 use crate::others::{shown_but, told, track};
 use crate::ways::{before_contact, made, speeds, story};
-use recrash_model::metrics::{CheckKind, CheckResult};
+use recrash_model::metrics::{Check, CheckKind, CheckResult};
 use recrash_model::scenario::{Actor, ActorPlan, Aspect, Device, Leg, Place};
 use recrash_reconstruct::{Reconstruction, held_against, reconstruct};
 use recrash_sim::{Ego, simulate};
@@ -160,6 +160,19 @@ fn who_strikes_the_partner_from_the_cross_street_comes_along_that() {
     let shown = shown_but(FROM_CROSS_STREET, "pusher", turned);
     let (pusher, ego) = (track(&shown, "pusher").states[0], shown.rollout.ego_track().states[0]);
     assert!((pusher.heading + 1.57).abs() < 0.2 && pusher.y > ego.y + 10.0, "from the left: {pusher:?}");
+}
+
+/// A person, or a model, may give it any name.
+#[test]
+fn who_strikes_the_partner_first_is_known_by_that_and_not_by_its_name() {
+    let account = told(FROM_CROSS_STREET);
+    let mut draft = made(&account).draft;
+    let pusher = draft.actors.iter_mut().find(|actor| actor.id == "pusher").expect("it is there");
+    pusher.id = "truck-2".to_owned();
+    let scenario = recrash_roads::check(draft).expect("it can run").value;
+    let verdict = held_against(&account, &scenario, &simulate(&scenario, Ego::Recorded)).expect("it can be staged");
+    let not_shown: Vec<&Check> = verdict.checks.iter().filter(|check| check.result != CheckResult::Shown).collect();
+    assert!(not_shown.is_empty(), "{not_shown:?}");
 }
 
 #[test]
