@@ -200,8 +200,9 @@ impl<'a> Crash<'a> {
         // Who is pushed moves when it touches; who was parked stood until then.
         let pushed = kind == CheckKind::CpState && told.pushed && told.thing.is_none();
         let stands = |state: &ActorState| state.velocity().length() < STANDS_MPS;
-        let parked =
-            side.state != ContactState::Parked || until_touched(self.rollout, track, time_s).iter().all(stands);
+        let parked = side.state != ContactState::Parked
+            || side.comes_to_park()
+            || until_touched(self.rollout, track, time_s).iter().all(stands);
         let pushed = pushed && parked;
         let stood = stood(track, time_s);
         let (slowed, gained) = changed(track, time_s);
@@ -213,7 +214,7 @@ impl<'a> Crash<'a> {
         let runs = !side.runs() || seen.velocity().length() > RUNS_LEAST_MPS;
         let shown = pushed
             || !(rolls_out && stood)
-                && state(side.state, track, seen, time_s)
+                && state(if side.comes_to_park() { ContactState::Stopped } else { side.state }, track, seen, time_s)
                 && stands_so
                 && runs
                 && (stood || !side.stood_first)

@@ -139,6 +139,12 @@ impl Side {
             && self.impact_mps.is_none()
     }
 
+    /// Whether it stands parked, and is told to have come there: "drove ahead of it and parked".
+    pub(crate) fn comes_to_park(&self) -> bool {
+        let comes = |doing: &Doing| matches!(doing.act, Act::Stop | Act::Park | Act::PullOver) && !doing.begun;
+        self.state == ContactState::Parked && self.acts.iter().any(comes)
+    }
+
     /// Whether it is told to have come into a junction.
     pub(crate) fn enters(&self) -> bool {
         self.acts.iter().any(Doing::is_entry)
