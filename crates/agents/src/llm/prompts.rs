@@ -132,13 +132,13 @@ pub fn restage(brief: &Brief, staging: &Staging) -> Result<String, AgentError> {
     restage_question(&quoted_records(brief), &staging_form(&staging.draft), (&facts, &missed), &staging.replay)
 }
 
-/// Says what a changed scenario shows.
+/// Says what a changed scenario shows, and how often it may be changed again.
 ///
 /// # Errors
 /// As [`system`].
-pub fn restaged(staging: &Staging) -> Result<String, AgentError> {
+pub fn restaged(staging: &Staging, left: usize) -> Result<String, AgentError> {
     let missed: Vec<String> = staging.missed.iter().map(missed_fact).collect();
-    render("restaged.md", context! { missed, replay => capped(staging.replay.trim_end(), MAX_REPLAY) })
+    render("restaged.md", context! { missed, left, replay => capped(staging.replay.trim_end(), MAX_REPLAY) })
 }
 
 /// Why a model that is content must not be.

@@ -21,6 +21,11 @@ impl Repairs {
         counted(&self.form, most)
     }
 
+    /// How many answers that say what cannot be may still go back.
+    pub(super) fn left(&self, most: usize) -> usize {
+        most - self.meaning.get().min(most)
+    }
+
     /// Counts an answer that says what cannot be; whether it may go back.
     pub(super) fn meaning(&self, most: usize) -> bool {
         counted(&self.meaning, most)

@@ -146,7 +146,11 @@ impl LanguageModel<'_> {
                 }
                 Err(problems) => push_repair(&mut question, exchange.answer, &problems)?,
                 Ok((next, note)) => {
-                    push_turns(&mut question, exchange.answer, prompts::restaged(&next)?);
+                    push_turns(
+                        &mut question,
+                        exchange.answer,
+                        prompts::restaged(&next, self.repairs.left(self.max_repairs))?,
+                    );
                     let changed = now.changed.into_iter().chain([note]).collect();
                     now = Staging { changed, ..next };
                 }

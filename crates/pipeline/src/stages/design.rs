@@ -12,11 +12,11 @@ use crate::suite::{Files, Stage};
 use recrash_agents::llm::Repairs;
 use recrash_agents::{Brief, Design, Feedback, Problem, Rules, inexpressible, narrative_contradictions};
 use recrash_lab::run_scenario;
+use recrash_model::Outcome;
 use recrash_model::metrics::{Check, Expectation};
 use recrash_model::narrative::Narrative;
 use recrash_model::scenario::ScenarioDraft;
 use recrash_model::selection::Cluster;
-use recrash_model::Outcome;
 
 /// Designs of the rules that are tried before the best so far is taken.
 const MAX_DESIGNS: usize = 6;
