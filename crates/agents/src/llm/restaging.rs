@@ -5,7 +5,7 @@ use super::staging::Staging;
 use super::{LanguageModel, fitting, prompts, push_repair, push_turns, read, restage_question};
 use crate::{AgentError, Brief};
 use recrash_model::scenario::{
-    Actor, ActorPlan, Author, Control, GraphMap, MapSpec, MissionStop, ObjectSpec, Part, ScenarioDraft,
+    Actor, ActorPlan, Author, Control, GraphMap, MapSpec, MissionStop, ObjectSpec, Part, RoadSpec, ScenarioDraft,
 };
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -39,7 +39,11 @@ pub(super) struct RestageAnswer {
     #[serde(default)]
     #[schemars(length(max = 32))]
     control: Option<Vec<Control>>,
-    /// All roads and junctions, where one of them is otherwise.
+    /// Roads that are otherwise, each whole; with a new id, one more.
+    #[serde(default)]
+    #[schemars(length(max = 48))]
+    roads: Vec<RoadSpec>,
+    /// All roads, junctions and areas, where a junction or an area is otherwise, or a road is left out.
     #[serde(default)]
     map: Option<GraphMap>,
     /// The rollout ends after this time at the latest, 1 to 60. [s]
@@ -83,12 +87,7 @@ impl RestageAnswer {
         problems.extend(missing.map(|id| format!("without names {id}, and there is no such road user")));
         let mut next = draft.clone();
         next.actors.retain(|actor| !self.without.contains(&actor.id));
-        for actor in self.actors {
-            match next.actors.iter_mut().find(|known| known.id == actor.id) {
-                Some(known) => *known = actor,
-                None => next.actors.push(actor),
-            }
-        }
+        lay_over(&mut next.actors, self.actors, |actor| &actor.id);
         if let Some(EgoAnswer { recorded, route, lane, stops, parts }) = self.ego {
             next.ego.recorded = Some(recorded);
             next.ego.route = route.unwrap_or(next.ego.route);
@@ -99,12 +98,25 @@ impl RestageAnswer {
         next.objects = self.objects.unwrap_or(next.objects);
         next.control = self.control.unwrap_or(next.control);
         next.map = self.map.map_or(next.map, MapSpec::G);
+        if let MapSpec::G(map) = &mut next.map {
+            lay_over(&mut map.roads, self.roads, |road| &road.id);
+        }
         next.duration_s = self.duration_s.unwrap_or(next.duration_s);
         if next == *draft {
             problems.push("as_told is false, and nothing is otherwise in the answer".to_owned());
         }
         next.source.author = Author::Model(model.to_owned());
         if problems.is_empty() { Ok(next) } else { Err(problems) }
+    }
+}
+
+/// Puts each of these in the place of the one with its id, or behind all.
+fn lay_over<T>(known: &mut Vec<T>, others: Vec<T>, id: impl Fn(&T) -> &String) {
+    for other in others {
+        match known.iter_mut().find(|one| id(one) == id(&other)) {
+            Some(one) => *one = other,
+            None => known.push(other),
+        }
     }
 }
 

@@ -102,6 +102,24 @@ fn a_change_is_staged_and_its_replay_goes_back_until_the_model_is_content() {
 }
 
 #[test]
+fn a_road_that_is_otherwise_takes_the_place_of_the_one_with_its_id() {
+    let road = |id: &str, length_m: f64| {
+        json!({"id": id, "start": {"at": {"x_m": 0.0, "y_m": 0.0, "heading_deg": 0.0}},
+               "line": [{"straight": {"length_m": length_m}}], "right": [{"kind": "driving"}]})
+    };
+    let told = |roads: Value| json!({"as_told": false, "note": "told is a side road, shown is none", "roads": roads});
+    let all = json!({"as_told": false, "note": "told are roads", "map": {"roads": [road("main", 100.0), road("side", 50.0)]}});
+    let (made, ..) = restaged(&[&all, &told(json!([road("side", 80.0), road("alley", 20.0)])), &as_told()], 3);
+    let MapSpec::G(map) = made.unwrap().draft.map else { panic!("roads") };
+    let lengths: Vec<String> = map.roads.iter().map(|road| format!("{} {:?}", road.id, road.line)).collect();
+    assert_eq!(map.roads.len(), 3, "{lengths:?}");
+    for (found, wanted) in lengths.iter().zip(["main", "side", "alley"]) {
+        assert!(found.starts_with(wanted), "{lengths:?}");
+    }
+    assert!(lengths[1].contains("80.0") && lengths[0].contains("100.0"), "{lengths:?}");
+}
+
+#[test]
 fn a_lost_fact_a_scenario_that_cannot_run_and_no_change_go_back() {
     let nothing = json!({"as_told": false, "note": "it is otherwise"});
     let same = json!({"as_told": false, "note": "", "without": ["nobody"]});
