@@ -1,7 +1,8 @@
 //! Where everybody is in the coordinates of the scenario, for who changes it.
 
 use super::{degrees, first_contact_step};
-use recrash_model::rollout::{ActorTrack, Role, Rollout, STEP_S};
+use recrash_model::geometry::Pose;
+use recrash_model::rollout::{ActorTrack, PlacedObstacle, Role, Rollout, STEP_S};
 
 /// Steps between two lines.
 const LINE_STEPS: usize = 10;
@@ -28,6 +29,7 @@ pub fn in_the_plane(rollout: &Rollout) -> String {
     lines.extend((0..=contact).filter(|step| *step == contact || step.is_multiple_of(LINE_STEPS)).map(line));
     if rollout.first_contact_of(0).is_none() {
         lines.extend(users[1..].iter().filter_map(|other| nearest(users[0], other)));
+        lines.extend(nearest_thing(users[0], &rollout.obstacles));
     }
     lines.join("\n") + "\n"
 }
@@ -37,10 +39,22 @@ fn nearest(ego: &ActorTrack, other: &ActorTrack) -> Option<String> {
     let gap = |step: usize| ego.outline(step).gap(&other.outline(step));
     let there = (0..ego.states.len()).filter(|step| other.is_present(*step));
     let (gap_m, step) = there.map(|step| (gap(step), step)).min_by(|a, b| a.0.total_cmp(&b.0))?;
-    let at = |actor: &ActorTrack| {
-        let place = actor.states[step].position();
-        format!("({:.2}, {:.2}, {})", place.x, place.y, degrees(actor.states[step].heading))
-    };
+    Some(gap_line((gap_m, step), ego, &other.id, other.states[step].pose()))
+}
+
+/// How near the ego came to the thing that it came nearest to.
+fn nearest_thing(ego: &ActorTrack, things: &[PlacedObstacle]) -> Option<String> {
+    let gaps = things.iter().enumerate().flat_map(|(number, thing)| {
+        let outline = thing.outline();
+        (0..ego.states.len()).map(move |step| (ego.outline(step).gap(&outline), step, number))
+    });
+    let (gap_m, step, number) = gaps.min_by(|a, b| a.0.total_cmp(&b.0))?;
+    Some(gap_line((gap_m, step), ego, &format!("thing {number}"), things[number].pose))
+}
+
+fn gap_line((gap_m, step): (f64, usize), ego: &ActorTrack, other: &str, at: Pose) -> String {
+    let place = |pose: Pose| format!("({:.2}, {:.2}, {})", pose.position.x, pose.position.y, degrees(pose.heading));
     let time_s = step as f64 * STEP_S;
-    Some(format!("Least gap of ego and {}: {gap_m:.2} m at {time_s:.1} s, at {} and {}", other.id, at(ego), at(other)))
+    let own = place(ego.states[step].pose());
+    format!("Least gap of ego and {other}: {gap_m:.2} m at {time_s:.1} s, at {own} and {}", place(at))
 }

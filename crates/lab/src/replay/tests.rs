@@ -55,7 +55,12 @@ fn doors_arms_and_things_are_told() {
     );
     tells(
         &replay(include_str!("../../../../cases/kinds/22-pole-wall-kerb.json")),
-        &["Thing 0 is a pole, 0.30 m long", "Centres at the end: ego: ", "nobody touches anybody or anything"],
+        &[
+            "Thing 0 is a pole, 0.30 m long",
+            "Centres at the end: ego: ",
+            "nobody touches anybody or anything",
+            "Least gap of ego and thing ",
+        ],
     );
 }
 
