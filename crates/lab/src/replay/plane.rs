@@ -1,8 +1,9 @@
 //! Where everybody is in the coordinates of the scenario, for who changes it.
 
 use super::{degrees, first_contact_step};
-use recrash_model::geometry::Pose;
-use recrash_model::rollout::{ActorTrack, PlacedObstacle, Role, Rollout, STEP_S};
+use recrash_metrics::contact::contact_geometry;
+use recrash_model::geometry::{OrientedBox, Pose};
+use recrash_model::rollout::{ActorState, ActorTrack, PlacedObstacle, Role, Rollout, STEP_S};
 
 /// Steps between two lines.
 const LINE_STEPS: usize = 10;
@@ -27,11 +28,29 @@ pub fn in_the_plane(rollout: &Rollout) -> String {
     };
     let mut lines = vec!["Centres in the plane (x m, y m, heading deg):".to_owned()];
     lines.extend((0..=contact).filter(|step| *step == contact || step.is_multiple_of(LINE_STEPS)).map(line));
+    lines.extend(place_of_touch(rollout));
     if rollout.first_contact_of(0).is_none() {
         lines.extend(users[1..].iter().filter_map(|other| nearest(users[0], other)));
         lines.extend(nearest_thing(users[0], &rollout.obstacles));
     }
     lines.join("\n") + "\n"
+}
+
+/// Where on both bodies the ego and the first whom it touches meet.
+fn place_of_touch(rollout: &Rollout) -> Option<String> {
+    let (other, _, own_state, other_state) = rollout.first_ego_contact()?;
+    let outline = |actor: usize, state: &ActorState| {
+        OrientedBox::new(state.pose(), rollout.actors[actor].length_m, rollout.actors[actor].width_m)
+    };
+    let (own, of_other) = (outline(0, &own_state), outline(other, &other_state));
+    let touch = contact_geometry(&own, own_state.velocity(), &of_other, other_state.velocity());
+    let place = |outline: &OrientedBox, id: &str| {
+        let at = outline.to_local(touch.point);
+        let (along, aside) = (if at.x < 0.0 { "behind" } else { "ahead" }, if at.y < 0.0 { "right" } else { "left" });
+        format!("{:.1} m {along} and {:.1} m to the {aside} of the centre of {id}", at.x.abs(), at.y.abs())
+    };
+    let id = &rollout.actors[other].id;
+    Some(format!("The contact of ego and {id} is {}, {}", place(&own, "ego"), place(&of_other, id)))
 }
 
 /// How near two came to each other, and where both were then.

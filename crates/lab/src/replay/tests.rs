@@ -34,6 +34,7 @@ fn who_stands_at_a_signal_and_who_comes_from_behind_is_told() {
             "ego and cp touch: rear of ego on front of cp",
             "It ends at ",
             "Centres in the plane (x m, y m, heading deg):\n 0.0 s: ego (",
+            "The contact of ego and cp is 2.2 m behind and ",
         ],
     );
     assert_eq!(told, replay(include_str!("../../../../cases/crashes/01-rear-end-at-red.json")));
