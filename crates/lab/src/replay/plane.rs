@@ -8,11 +8,15 @@ use recrash_model::rollout::{ActorState, ActorTrack, PlacedObstacle, Role, Rollo
 /// Steps between two lines.
 const LINE_STEPS: usize = 10;
 
+/// A part of this length is a trailer or an arm, and no door or mirror. [m]
+const LONG_PART_M: f64 = 2.5;
+
 /// Centres and headings in the plane, every second and at the first contact; of a run in which the ego touches nobody, how near it came
 /// to each.
 pub fn in_the_plane(rollout: &Rollout) -> String {
     let contact = first_contact_step(rollout);
-    let users: Vec<&ActorTrack> = rollout.actors.iter().filter(|actor| actor.role != Role::Part).collect();
+    let is_shown = |actor: &&ActorTrack| actor.role != Role::Part || actor.length_m >= LONG_PART_M;
+    let users: Vec<&ActorTrack> = rollout.actors.iter().filter(is_shown).collect();
     let place = |actor: &ActorTrack, step: usize| {
         let state = &actor.states[step];
         let (at, heading) = (state.position(), degrees(state.heading));
@@ -30,7 +34,8 @@ pub fn in_the_plane(rollout: &Rollout) -> String {
     lines.extend((0..=contact).filter(|step| *step == contact || step.is_multiple_of(LINE_STEPS)).map(line));
     lines.extend(place_of_touch(rollout));
     if rollout.first_contact_of(0).is_none() {
-        lines.extend(users[1..].iter().filter_map(|other| nearest(users[0], other)));
+        let whole = users[1..].iter().filter(|other| other.part_of.is_none());
+        lines.extend(whole.filter_map(|other| nearest(users[0], other)));
         lines.extend(nearest_thing(users[0], &rollout.obstacles));
     }
     lines.join("\n") + "\n"

@@ -52,7 +52,7 @@ fn doors_arms_and_things_are_told() {
     );
     tells(
         &replay(include_str!("../../../../cases/crashes/22-gate-arm-comes-down.json")),
-        &["Arm of gate: begins to turn at ", "gate.arm: fixed object, 3.60 x 0.10 m, part of gate"],
+        &["Arm of gate: begins to turn at ", "gate.arm: fixed object, 3.60 x 0.10 m, part of gate", "), gate.arm ("],
     );
     tells(
         &replay(include_str!("../../../../cases/kinds/22-pole-wall-kerb.json")),
