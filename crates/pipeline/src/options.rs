@@ -126,6 +126,12 @@ impl Default for Options {
 }
 
 impl Options {
+    /// The model that stages what the rules do not show as told, where one designs and every incident that can be told is to be one: a
+    /// smaller suite has enough of those that the rules tell.
+    pub fn stager(&self) -> Option<&str> {
+        self.cast.designer().filter(|_| self.budget.is_none())
+    }
+
     /// The command that makes the suite, without the output folder.
     pub fn command(&self) -> String {
         let default = Self::default();

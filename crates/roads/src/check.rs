@@ -14,6 +14,7 @@ mod remarks;
 mod starts;
 
 pub use actors::arm_m;
+pub use numbers::MAX_WANTED_MPS;
 
 use crate::network::RoadNetwork;
 use crate::scenario::{ActorPlacement, ControlPlacement, ObstaclePlacement, Placement, Scenario, ego_size_m};

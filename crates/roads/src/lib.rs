@@ -30,7 +30,7 @@ pub mod traffic;
 mod ways;
 
 pub use centreline::Centreline;
-pub use check::{arm_m, check, check_on};
+pub use check::{MAX_WANTED_MPS, arm_m, check, check_on};
 pub use conflict::{Conflict, Footprint};
 pub use course::{Beside, Course, CourseLeg, CoursePiece, Spot, StopLine};
 pub use drawing::{DrawnArea, GroundShape, LineKind, RoadDrawing, RoadLine};

@@ -147,6 +147,12 @@ pub fn missed(checks: &[Check]) -> String {
     format!("as_told is true, and told facts are missed: {}", told.join("; "))
 }
 
+/// Why nothing more is asked.
+pub fn missed_at_last(checks: &[Check]) -> String {
+    let told: Vec<String> = checks.iter().map(missed_fact).collect();
+    format!("its last change misses told facts: {}", told.join("; "))
+}
+
 /// A told fact that is missed, and what the run shows instead.
 fn missed_fact(check: &Check) -> String {
     format!("{}: {}; shown is {}", check.kind.label(), check.expected, check.observed)

@@ -157,6 +157,10 @@ impl LanguageModel<'_> {
                     return Err(self.no_usable_answer(&[why]));
                 }
                 Err(problems) => push_repair(&mut question, exchange.answer, &problems)?,
+                // No answer could be taken any more.
+                Ok((next, _)) if !next.missed.is_empty() && self.repairs.left(self.max_repairs) == 0 => {
+                    return Err(self.no_usable_answer(&[prompts::missed_at_last(&next.missed)]));
+                }
                 Ok((next, note)) => {
                     push_turns(
                         &mut question,

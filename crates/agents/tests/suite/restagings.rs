@@ -97,8 +97,9 @@ fn a_change_is_staged_and_its_replay_goes_back_until_the_model_is_content() {
     );
     assert!(told.contains("misses no told fact") && told.contains("cp and 1 others"), "{told}");
     assert!(told.contains("It cannot be changed any more"), "{told}");
-    let (_, told, _) = restaged(&[&with("cp", -9.0), &as_told()], 3);
-    assert!(told.contains("You may change it 2 more times;"), "{told}");
+    // How many more there are does not change what was asked: answers that were paid for stay of use where more are granted.
+    let told = |granted: usize| restaged(&[&with("cp", -9.0), &as_told()], granted).1;
+    assert_eq!(told(2), told(5));
 }
 
 #[test]

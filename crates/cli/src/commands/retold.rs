@@ -123,7 +123,7 @@ fn restagings(summary: &Summary) {
         String::new()
     } else {
         format!(
-            "; {not_content} stay as the rules staged them, since nothing usable came of its answers (summary.json says why)"
+            "; {not_content} stay as the rules staged them, or untold, since nothing usable came of its answers (summary.json says why)"
         )
     };
     sentence(&format!(

@@ -118,7 +118,7 @@ fn a_batch_waits_for_them_and_a_model_that_tunes_is_refused() {
     let output = run(&folder.suite(), &["--design", "scripted", "--llm", "batch"]);
     assert_eq!(output.status.code(), Some(4), "{}", shown(&output));
     let requests = std::fs::read_to_string(folder.suite().join("requests.jsonl")).unwrap();
-    assert_eq!(requests.lines().count(), 2, "first those that the rules do not show as told");
+    assert_eq!(requests.lines().count(), 4, "a small suite has enough that the rules tell");
     let other = Folder::new();
     let output = run(&other.suite(), &["--tune", "scripted", "--llm", "batch"]);
     assert_eq!(output.status.code(), Some(3), "{}", shown(&output));
@@ -190,6 +190,23 @@ fn a_crash_that_the_rules_do_not_show_as_told_is_staged_by_the_model_and_not_tol
     assert_eq!(untold.as_array().unwrap().len(), 1);
     assert!(untold[0]["reason"].as_str().unwrap().contains("SV acts is not drawn"), "{untold}");
 
+    let summary = read(&folder.suite().join("summary.json"));
+    assert_eq!(shares(&summary, "design"), [1, 1, 1]);
+    let design = summary["models"].as_array().unwrap().iter().find(|model| model["role"] == "design").unwrap();
+    let why = design["reasons"][0]["why"].as_str().unwrap();
+    assert!(why.contains("stays untold") && why.contains("told facts are missed"), "{why}");
+
+    // A person's account is staged by the model as well.
+    let edited = folder.suite().join(format!("3-narratives/{}.account.json", staged["id"].as_str().unwrap()));
+    let before = std::fs::read_to_string(&edited).unwrap();
+    let mut account: Value = serde_json::from_str(&before).unwrap();
+    account["words"] = json!(account["words"].as_u64().unwrap() + 1);
+    std::fs::write(&edited, account.to_string()).unwrap();
+    run(&asked);
+    assert_eq!(told().len(), 2);
+    std::fs::write(&edited, before).unwrap();
+    run(&asked);
+
     // Nothing is asked again, also where the runs begin anew; without the model it is not told any more.
     let requests = server.requests().len();
     let scenario = scenario(&folder.suite(), staged);
@@ -199,4 +216,33 @@ fn a_crash_that_the_rules_do_not_show_as_told_is_staged_by_the_model_and_not_tol
     assert_eq!(self::scenario(&folder.suite(), staged), scenario);
     run(&["--design", "rules"]);
     assert_eq!(told(), ["90001-102"]);
+}
+
+/// What a model reads may be right, though the rules do not show it; where nobody stages it, the reader's account stays, and its name.
+#[test]
+fn a_reading_that_nobody_stages_is_taken_back_and_said() {
+    let server = Server::start(|request| {
+        let asked = request.messages()[1]["content"].as_str().unwrap();
+        if asked.starts_with("Look at the replay") {
+            return Reply::Text(json!({"as_told": true, "note": ""}).to_string());
+        }
+        let acts = json!([
+            {"act": "follow", "step": 0, "words": "operating"},
+            {"act": "stop", "step": 1, "words": "come to a stop"},
+            {"act": "swerve", "side": "right", "step": 3, "words": "at the right curb"},
+        ]);
+        Reply::Text(json!({"report": "90001-102/1", "sv": {"acts": acts}}).to_string())
+    });
+    let folder = Folder::new();
+    let stories = concat!(env!("CARGO_MANIFEST_DIR"), "/../../eval/stories.csv");
+    let mut command =
+        recrash(&["run", "--profile", "open", "--records", stories, "--budget", "all", "--tune-budget", "1"]);
+    command.args(["--where", "report = \"90001-102\"", "--paraphrase", "scripted", "--model-reads", "all"]);
+    command.args(["--design", "scripted", "--repairs", "1", "--base-url", &server.base_url]);
+    well(&command.args(["--out", folder.suite().to_str().unwrap()]).output().unwrap());
+    let summary = read(&folder.suite().join("summary.json"));
+    assert_eq!(summary["cases"].as_array().unwrap().len(), 1, "the reader's account is told");
+    assert_eq!(shares(&summary, "paraphrase"), [0, 0, 1]);
+    let readers = read(&folder.suite().join("1-accounts.agents.json")).to_string();
+    assert!(readers.contains("and no model stages it"), "{readers}");
 }

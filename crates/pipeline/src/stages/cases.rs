@@ -31,7 +31,7 @@ pub(crate) struct Cases {
     /// Who was asked to read which incident again.
     pub readers: BTreeMap<String, AgentLog>,
     /// How a model staged which incident, of those that the rules do not show as told.
-    stagings: BTreeMap<String, DesignLog>,
+    pub stagings: BTreeMap<String, DesignLog>,
     /// Where records stand, by report and by incident, and told accounts by report.
     reports: BTreeMap<String, Vec<usize>>,
     incidents: BTreeMap<String, Vec<usize>>,
@@ -66,8 +66,8 @@ impl Cases {
                 (Some(suite.store().read_json(names::ACCOUNTS)?), suite.store().read_json(names::ACCOUNT_READERS)?)
             }
         };
-        let staged_by = suite.options().cast.designer().filter(|_| accounts.is_some());
-        let stagings = staged_by.map(|_| suite.store().read_json(names::STAGED_AGAIN)).transpose()?.unwrap_or_default();
+        let is_staged = suite.options().stager().is_some() && accounts.is_some();
+        let stagings = if is_staged { stagings(suite)? } else { BTreeMap::new() };
         let reports = places(&records.records, |record| Some(&record.id.report_id));
         let incidents = places(&records.records, |record| record.incident_id.as_ref());
         let told = accounts.as_ref().map(|set| places(&set.told, |account| Some(&account.report.report_id)));
@@ -181,6 +181,17 @@ impl Cases {
         let narrative: Narrative = suite.store().read_json(&names::narrative(id)).map_err(|e| of_case(id, e))?;
         let expectation = expectation(&narrative, self.told(cluster, &narrative), suite.profile());
         Ok((narrative, expectation))
+    }
+}
+
+/// How a model staged what the rules do not show as told.
+fn stagings(suite: &Suite) -> Result<BTreeMap<String, DesignLog>, PipelineError> {
+    // A suite of before has none, and one that somebody changed is no good.
+    suite.output_hash(Stage::Records, Stage::Records.name(), names::STAGED_AGAIN)?;
+    let logs: BTreeMap<String, DesignLog> = suite.store().read_json(names::STAGED_AGAIN)?;
+    match logs.values().all(|log| log.taken < log.attempts.len()) {
+        true => Ok(logs),
+        false => Err(suite.stale(Stage::Records)),
     }
 }
 

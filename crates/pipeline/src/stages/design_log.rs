@@ -4,6 +4,7 @@ use crate::models::cast::RULES;
 use recrash_model::Diagnostic;
 use recrash_model::metrics::Check;
 use recrash_model::scenario::{Author, ScenarioDraft};
+use recrash_reconstruct::Reconstruction;
 use recrash_report::Changed;
 use serde::{Deserialize, Serialize};
 
@@ -44,6 +45,13 @@ impl DesignLog {
     pub(super) fn by_rules(attempt: DesignAttempt) -> Self {
         let attempts = vec![attempt];
         Self { attempts, ..Self::asking(RULES) }
+    }
+
+    /// Of what the rules staged of an account, with what it does not show as told.
+    pub(super) fn begun_with(made: &Reconstruction) -> Self {
+        let missed = made.all_missed().cloned().collect();
+        let first = DesignAttempt { draft: made.draft.clone(), diagnostics: Vec::new(), unfaithful: Some(missed) };
+        Self { assumed: made.assumed.clone(), ..Self::by_rules(first) }
     }
 
     /// Before anything was tried.

@@ -5,7 +5,7 @@ use super::second_staging::{SecondStaging, stage_again};
 use super::{StageReport, StageWork, cases, own, player};
 use crate::error::PipelineError;
 use crate::files::json::{to_compact_json, to_json};
-use crate::models::cast::Reads;
+use crate::models::cast::{AgentLog, Reads};
 use crate::reading::records::RecordInput;
 use crate::reading::retelling::{Second, StageAgain, Unread, Unstaged, tell};
 use crate::suite::Suite;
@@ -50,9 +50,10 @@ pub(super) fn run(work: &StageWork) -> Result<StageReport, PipelineError> {
             stagings = told;
             Ok(made)
         };
-        let stage_again: Option<&mut StageAgain> = suite.options().cast.designer().is_some().then_some(&mut stage);
+        let stage_again: Option<&mut StageAgain> = suite.options().stager().is_some().then_some(&mut stage);
         let second = Second { reads: suite.options().cast.reads, read_again: &mut again, stage_again };
         let (told, accounts) = tell(value, filter.as_ref(), work.progress, second, suite.stagings())?;
+        take_back(&mut logs, &accounts);
         Ok(vec![
             (names::ACCOUNT_READERS.into(), to_json(&logs)),
             (names::STAGED_AGAIN.into(), to_compact_json(&stagings)),
@@ -66,6 +67,19 @@ pub(super) fn run(work: &StageWork) -> Result<StageReport, PipelineError> {
         report.diagnostics.extend(what_is_new(&before, &suite.store().read_json(names::ACCOUNTS)?));
     }
     Ok(report)
+}
+
+/// A model's account that is not the one in the end has been read by the reader: the crash is not shown as it tells, and nobody staged it.
+fn take_back(readers: &mut BTreeMap<String, AgentLog>, accounts: &AccountSet) {
+    let by_rules = |account: &Account| account.author.is_rules().then(|| account.incident.clone());
+    let all = accounts.told.iter().chain(accounts.untold.iter().map(|untold| &untold.account));
+    let by_rules: BTreeSet<String> = all.filter_map(by_rules).collect();
+    let is_taken_back =
+        |(incident, log): &(&String, &mut AgentLog)| !log.author.is_rules() && by_rules.contains(*incident);
+    for (_, log) in readers.iter_mut().filter(is_taken_back) {
+        let why = format!("the rules do not show the crash as {} reads it, and no model stages it", log.asked);
+        *log = AgentLog::fallback(&log.asked, log.repairs, why);
+    }
 }
 
 /// What came in since the last run of this suite: incidents by crash type, and which roads and movements nobody had seen.
@@ -122,7 +136,7 @@ pub(super) fn inputs(suite: &Suite, input: &RecordInput) -> Vec<String> {
     let cast = &suite.options().cast;
     let reader = by_accounts.then(|| player(suite, &cast.paraphrase));
     // The rules stage what the reader makes of it; a model what they do not show as told.
-    let stager = suite.options().cast.designer().filter(|_| by_accounts).map(|name| player(suite, name));
+    let stager = suite.options().stager().filter(|_| by_accounts).map(|name| player(suite, name));
     let reads = (by_accounts && cast.reads == Reads::All).then(|| "all".to_owned());
     std::iter::once(cases::text_of(suite.profile()))
         .chain(reader)

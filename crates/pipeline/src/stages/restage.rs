@@ -18,7 +18,7 @@ use recrash_model::rollout::{ActorState, Rollout, STEP_S};
 use recrash_model::scenario::{EgoSpec, ScenarioDraft, Source};
 use recrash_model::selection::Cluster;
 use recrash_reconstruct::{Reconstruction, held_against, reconstruct};
-use recrash_roads::Simulator;
+use recrash_roads::{MAX_WANTED_MPS, Simulator};
 use recrash_sim::{Ego, Native};
 use std::cell::RefCell;
 
@@ -67,6 +67,7 @@ pub(super) fn looked_at(
         draft.ego.handover_s = given.draft.ego.handover_s.map(|time_s| time_s.min(draft.duration_s));
         let (mut staged, rollout) = rehearse(account, draft, &shown)?;
         hand_over(&mut staged.draft.ego, &rollout, (&given.draft.ego, &of_rules));
+        recrash_roads::check(staged.draft.clone()).map_err(errors)?;
         let (draft, unfaithful) = (staged.draft.clone(), Some(staged.missed.clone()));
         attempts.borrow_mut().push(DesignAttempt { draft, diagnostics: Vec::new(), unfaithful });
         Ok(staged)
@@ -118,15 +119,16 @@ pub(crate) fn question(
     restage_question(model, &brief, &given).map_err(|e| PipelineError::bad_input(e.to_string()))
 }
 
+fn errors(why: Vec<Diagnostic>) -> Vec<String> {
+    why.iter().filter(|told| told.is_error()).map(ToString::to_string).collect()
+}
+
 /// Runs the recorded driver in a scenario, and holds what comes of it against the account. `shown` are facts that it may not lose.
 ///
 /// # Errors
 /// It cannot be run.
 fn rehearse(account: &Account, draft: ScenarioDraft, shown: &[Check]) -> Result<(Staging, Rollout), Vec<String>> {
     // As the stages behind this one read it from its file.
-    let errors = |why: Vec<Diagnostic>| -> Vec<String> {
-        why.iter().filter(|told| told.is_error()).map(ToString::to_string).collect()
-    };
     let read = recrash_roads::read_draft(&recrash_roads::write_draft(&draft)).map_err(errors)?.value;
     let scenario = recrash_roads::check(read).map_err(errors)?.value;
     let rollout = Native::new(Ego::Recorded).run(&scenario).map_err(|why| vec![why.to_string()])?;
@@ -184,7 +186,8 @@ fn hand_over(ego: &mut EgoSpec, rollout: &Rollout, (of_rules, before): (&EgoSpec
     let until = ((contact_s / STEP_S) as usize).min(rollout.steps() - 1);
     let speeds: Vec<f64> = rollout.ego_track().states[..=until].iter().map(ActorState::speed).collect();
     ego.handover_s = of_rules.handover_s.map(|_| handover_s(&speeds, contact_s));
-    ego.target_speed_mps = speeds.iter().copied().fold(of_rules.target_speed_mps, f64::max);
+    // Whoever is tested wants to go no faster than a scenario allows.
+    ego.target_speed_mps = speeds.iter().copied().fold(of_rules.target_speed_mps, f64::max).min(MAX_WANTED_MPS);
 }
 
 /// When that is, by the speeds of the ego until its contact, step by step. [s]

@@ -23,7 +23,7 @@ use recrash_model::scenario::ScenarioDraft;
 use recrash_model::selection::Cluster;
 use recrash_model::triage::TRIAGE_FORMAT;
 use recrash_model::tuning::{Aim, Parameter, TunePoint};
-use recrash_reconstruct::{held_against, open_choices, reconstruct, reconstruct_with};
+use recrash_reconstruct::{Reconstruction, held_against, open_choices, reconstruct, reconstruct_with};
 use recrash_roads::{RunError, Scenario};
 use recrash_search::Next;
 use recrash_sim::{Ego, Native};
@@ -105,12 +105,34 @@ fn design(bench: &Bench, cluster: &Cluster) -> Result<Files, PipelineError> {
         return Ok(vec![(names::scenario(id), to_json(&draft)), (names::design_log(id), to_json(&log))]);
     }
     let found = bench.suite.stagings().take(&account);
-    let staged = found.map_or_else(|| staged(&account), Ok).map_err(|why| PipelineError::scenario(id, why))?;
-    let draft = named(staged.draft, bench, cluster);
-    let attempt = DesignAttempt { draft: draft.clone(), diagnostics: Vec::new(), unfaithful: Some(Vec::new()) };
-    let log = DesignLog { assumed: staged.assumed, ..DesignLog::by_rules(attempt) };
-    let (draft, log) = restaged(bench, cluster, &account, draft, log)?;
+    let (draft, log) = match found.map_or_else(|| staged(&account), Ok) {
+        Ok(staged) => {
+            let draft = named(staged.draft, bench, cluster);
+            let attempt = DesignAttempt { draft: draft.clone(), diagnostics: Vec::new(), unfaithful: Some(Vec::new()) };
+            let log = DesignLog { assumed: staged.assumed, ..DesignLog::by_rules(attempt) };
+            restaged(bench, cluster, &account, draft, log)?
+        }
+        Err(why) => staged_anew(bench, cluster, &account, &why)?,
+    };
     Ok(vec![(names::scenario(id), to_json(&draft)), (names::design_log(id), to_json(&log))])
+}
+
+/// What a model stages of an account that the rules show otherwise than told: a person edited it.
+fn staged_anew(
+    bench: &Bench,
+    cluster: &Cluster,
+    account: &Account,
+    why: &str,
+) -> Result<(ScenarioDraft, DesignLog), PipelineError> {
+    let untold = |more: &str| PipelineError::scenario(&cluster.scenario_id, format!("{why}{more}"));
+    let made = bench.suite.options().stager().and_then(|_| reconstruct(account).ok()).ok_or_else(|| untold(""))?;
+    let draft = named(made.draft.clone(), bench, cluster);
+    let log = DesignLog::begun_with(&Reconstruction { draft: draft.clone(), ..made });
+    let (draft, log) = restaged(bench, cluster, account, draft, log)?;
+    match log.gave_up.is_empty() {
+        true => Ok((draft, log)),
+        false => Err(untold(&format!("; {}", log.gave_up.join("; ")))),
+    }
 }
 
 /// The scenario of an account in which every told fact that can be shown is shown; else why there is none.

@@ -68,7 +68,7 @@ pub(super) fn read_again(
 
     let stage = "read";
     progress.event(ProgressEvent::Started { stage, units: unread.len() });
-    let stages = suite.options().cast.designer().is_some();
+    let stages = suite.options().stager().is_some();
     let one = |each: &Unread| -> Result<(Option<Account>, AgentLog), PipelineError> {
         let repairs = Repairs::default();
         let mut answer = None;

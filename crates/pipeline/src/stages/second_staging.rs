@@ -1,7 +1,7 @@
 //! A language model stages the crashes that the rules do not show as they are told, in a suite that goes by accounts: it is given what there
 //! is of them, and changes that until no told fact is missed.
 
-use super::design_log::{DesignAttempt, DesignLog};
+use super::design_log::DesignLog;
 use super::restage::{as_staged, looked_at, question_cost};
 use crate::error::PipelineError;
 use crate::models::cast::reading_brief;
@@ -35,7 +35,7 @@ pub(super) fn stage_again(
     unstaged: &[Unstaged],
     progress: &dyn Progress,
 ) -> Result<SecondStaging, PipelineError> {
-    let Some((models, name)) = suite.models().zip(suite.options().cast.designer()) else {
+    let Some((models, name)) = suite.models().zip(suite.options().stager()) else {
         return Ok(SecondStaging::default());
     };
     if unstaged.is_empty() {
@@ -68,18 +68,23 @@ pub(super) fn stage_again(
     Ok(staged)
 }
 
-/// What the model makes of one of them.
+/// What the model makes of one of them. What goes wrong with this one alone is why it is not staged.
 fn staged_again(suite: &Suite, unstaged: &Unstaged) -> Result<(Option<Reconstruction>, DesignLog), PipelineError> {
     let Unstaged { incident, account, made } = *unstaged;
     let records: Vec<&CrashRecord> = incident.reports.iter().map(|report| &report.record).collect();
     let brief = reading_brief(&account.incident, &records, suite.profile(), account);
-    let missed = made.all_missed().cloned().collect();
-    let first = DesignAttempt { draft: made.draft.clone(), diagnostics: Vec::new(), unfaithful: Some(missed) };
-    let log = DesignLog { assumed: made.assumed.clone(), ..DesignLog::by_rules(first) };
-    let (draft, log) = looked_at(suite, &brief, account, made.draft.clone(), log)?;
-    let staged = match log.gave_up.is_empty() {
-        true => as_staged(account, &draft).map_err(|why| PipelineError::scenario(&account.incident, why.join("; "))),
-        false => return Ok((None, log)),
+    let begun = DesignLog::begun_with(made);
+    let gave_up = |why: String| (None, DesignLog { gave_up: vec![why], ..begun.clone() });
+    let (draft, log) = match looked_at(suite, &brief, account, made.draft.clone(), begun.clone()) {
+        Err(PipelineError::Scenario { why, .. }) => return Ok(gave_up(why)),
+        looked_at => looked_at?,
     };
-    Ok((Some(staged?).filter(|made| made.missed().is_none()), log))
+    if !log.gave_up.is_empty() {
+        return Ok((None, log));
+    }
+    Ok(match as_staged(account, &draft) {
+        Ok(made) if made.missed().is_none() => (Some(made), log),
+        Ok(_) => gave_up("what it is content with misses a told fact".to_owned()),
+        Err(why) => gave_up(why.join("; ")),
+    })
 }

@@ -417,7 +417,7 @@ pub(super) fn summarise(suite: &Suite, cases: &Cases, summaries: Vec<CaseSummary
         tables: selection.tables.clone(),
         templates: selection.templates.clone(),
         coverage: selection.coverage.clone(),
-        models: models(&suite.options().cast, &summaries, &cases.readers),
+        models: models(&suite.options().cast, &summaries, cases),
         accounts: cases.accounts.as_ref().map(AccountSummary::of),
         corpus: cases.accounts.as_ref().map(|accounts| corpus(accounts, &summaries)),
         cases: summaries,
@@ -448,21 +448,26 @@ fn agent(log: &AgentLog) -> RoleSummary {
     RoleSummary { outcome: log.outcome().to_owned(), why: log.fallback.clone() }
 }
 
-/// How the models of a cast did. In a suite that goes by accounts the reading is done before there are cases: `readers` has what
-/// came of it.
-fn models(cast: &Cast, cases: &[CaseSummary], readers: &BTreeMap<String, AgentLog>) -> Vec<ModelSummary> {
+/// How the models of a cast did. In a suite that goes by accounts the reading, and the staging of what the rules do not show as told, are
+/// done before there are cases.
+fn models(cast: &Cast, summaries: &[CaseSummary], cases: &Cases) -> Vec<ModelSummary> {
     type Played = Vec<(String, RoleSummary)>;
     let of_cases = |told: fn(&CaseSummary) -> Option<&RoleSummary>| -> Played {
-        cases.iter().filter_map(|case| Some((case.id.clone(), told(case)?.clone()))).collect()
+        summaries.iter().filter_map(|case| Some((case.id.clone(), told(case)?.clone()))).collect()
     };
-    let read = match readers.is_empty() {
+    let read = match cases.readers.is_empty() {
         true => of_cases(|case| case.narrated.as_ref()),
-        false => readers.iter().map(|(incident, log)| (incident.clone(), agent(log))).collect(),
+        false => cases.readers.iter().map(|(incident, log)| (incident.clone(), agent(log))).collect(),
     };
+    let untold = cases.stagings.iter().filter(|(_, log)| !log.gave_up.is_empty()).map(|(incident, log)| {
+        let why = Some(format!("its crash stays untold: {}", log.gave_up.join("; ")));
+        (incident.clone(), RoleSummary { outcome: FALLBACK.to_owned(), why })
+    });
+    let designed = of_cases(|case| case.designed.as_ref()).into_iter().chain(untold).collect();
     let reviewer = cast.review.clone().unwrap_or_else(|| RULES.to_owned());
     let roles = [
         ("paraphrase", &cast.paraphrase, read),
-        ("design", &cast.design, of_cases(|case| case.designed.as_ref())),
+        ("design", &cast.design, designed),
         ("tune", &cast.tune, of_cases(|case| case.tuned_by.as_ref())),
         (Role::Review.name(), &reviewer, of_cases(|case| case.reviewed.as_ref())),
     ];

@@ -200,9 +200,12 @@ impl<'a> Crash<'a> {
         // Who is pushed moves when it touches; who was parked stood until then.
         let pushed = kind == CheckKind::CpState && told.pushed && told.thing.is_none();
         let stands = |state: &ActorState| state.velocity().length() < STANDS_MPS;
-        let parked = side.state != ContactState::Parked
-            || side.comes_to_park()
-            || until_touched(self.rollout, track, time_s).iter().all(stands);
+        let untouched = until_touched(self.rollout, track, time_s);
+        let parked = match side.state == ContactState::Parked {
+            true if side.comes_to_park() => untouched.last().is_some_and(stands),
+            true => untouched.iter().all(stands),
+            false => true,
+        };
         let pushed = pushed && parked;
         let stood = stood(track, time_s);
         let (slowed, gained) = changed(track, time_s);

@@ -91,7 +91,7 @@ impl<'a> Seen<'a> {
 
     /// Whether somebody who is drawn is elsewhere than it is wanted, or drives against its red light.
     pub(super) fn strays(&self, scenario: &Scenario) -> bool {
-        let thrower = thrower(self.rollout, f64::INFINITY).map(|number| &self.rollout.actors[number]);
+        let thrower = self.thrower().filter(|_| self.told.pushed).map(|number| &self.rollout.actors[number]);
         let runs_red = |track: &ActorTrack| {
             let is_of_crash = track.id == "cp" || thrower.is_some_and(|thrower| std::ptr::eq(track, thrower));
             !is_of_crash && !std::ptr::eq(track, self.ego) && signals::runs_red(scenario, track)
@@ -170,9 +170,15 @@ impl<'a> Seen<'a> {
         self.rollout.actors.iter().find(|track| track.id == id)
     }
 
+    /// Number of who touched the partner before the ego's contact.
+    fn thrower(&self) -> Option<usize> {
+        let contact_s = self.rollout.first_contact_of(0).map_or(f64::INFINITY, |(time_s, _)| time_s);
+        thrower(self.rollout, contact_s)
+    }
+
     /// Whether who is told to have thrown the partner touched it.
     fn throws(&self) -> bool {
-        let number = thrower(self.rollout, f64::INFINITY);
+        let number = self.thrower();
         let as_told = |number: usize| {
             let kind = self.told.pusher.and_then(Kind::partner_kind);
             let track = &self.rollout.actors[number];

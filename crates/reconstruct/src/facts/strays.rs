@@ -56,7 +56,7 @@ pub(crate) fn strays(told: &Told, scenario: &Scenario, rollout: &Rollout) -> boo
         until.iter().step_by(10).any(|state| !scenario.network().on_road(state.position()))
     };
     if keeping::is_tight(told.cp.kind, until_touched(rollout, track, touch.time_s))
-        || thrower(rollout, touch.time_s).is_some_and(off_road)
+        || told.pushed && thrower(rollout, touch.time_s).is_some_and(off_road)
     {
         return true;
     }

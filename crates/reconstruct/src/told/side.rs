@@ -141,8 +141,9 @@ impl Side {
 
     /// Whether it stands parked, and is told to have come there: "drove ahead of it and parked".
     pub(crate) fn comes_to_park(&self) -> bool {
+        let last = self.acts.iter().rev().find(|doing| !matches!(doing.act, Act::Hold | Act::OpenDoor));
         let comes = |doing: &Doing| matches!(doing.act, Act::Stop | Act::Park | Act::PullOver) && !doing.begun;
-        self.state == ContactState::Parked && self.acts.iter().any(comes)
+        self.state == ContactState::Parked && last.is_some_and(comes)
     }
 
     /// Whether it is told to have come into a junction.

@@ -12,7 +12,7 @@ pub(super) const MAX_SPEED_MPS: f64 = 80.0 / 3.6;
 
 /// The fastest that an ego may want on a road network, where recorded drivers may be faster than its engine: it then holds what it
 /// has. 100 mph. [m/s]
-pub(super) const MAX_WANTED_MPS: f64 = 44.7;
+pub const MAX_WANTED_MPS: f64 = 44.7;
 
 /// The radius of the innermost lane of a curve, at least: two thirds more than a car's own turning circle. [m]
 const MIN_LANE_RADIUS_M: f64 = 5.0;
