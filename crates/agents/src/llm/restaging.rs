@@ -98,8 +98,10 @@ impl RestageAnswer {
         next.objects = self.objects.unwrap_or(next.objects);
         next.control = self.control.unwrap_or(next.control);
         next.map = self.map.map_or(next.map, MapSpec::G);
-        if let MapSpec::G(map) = &mut next.map {
-            lay_over(&mut map.roads, self.roads, |road| &road.id);
+        match &mut next.map {
+            MapSpec::G(map) => lay_over(&mut map.roads, self.roads, |road| &road.id),
+            _ if self.roads.is_empty() => {}
+            _ => problems.push("roads: this scenario has none of its own; give map".to_owned()),
         }
         next.duration_s = self.duration_s.unwrap_or(next.duration_s);
         if next == *draft {

@@ -3,8 +3,9 @@
 use crate::ways::{before_contact, degrees_between, made, partner, story};
 use recrash_model::metrics::{CheckKind, CheckResult};
 use recrash_model::rollout::ActorState;
-use recrash_model::scenario::MapSpec;
-use recrash_reconstruct::{Reconstruction, held_against};
+use recrash_model::scenario::{Act, Deed, Leg, MapSpec, Place, ScenarioDraft};
+use recrash_reconstruct::{Reconstruction, held_against, reconstruct};
+use recrash_sim::{Ego, simulate};
 
 const PUSHED_PARKED: &str = "The AV was stopped on Elm Street for a passenger drop-off. Behind it a sedan was parked at the curb with no one inside. A pickup truck drifted to the \
                              right and ran into the back of the sedan, and the sedan was pushed into the rear of the AV.";
@@ -153,4 +154,38 @@ fn who_is_told_to_set_off_as_the_ego_begins_its_turn_does_so_then() {
     let (states, _) = partner(&shown);
     let off = states.iter().position(|state| state.speed() > 0.1).expect("it sets off");
     assert!(off + 10 > turns, "it sets off {} steps before", turns - off);
+}
+
+const PARKS_AHEAD: &str = "The AV was traveling north on Elm Street behind a van. The van came to a stop and parked in the lane. The front of the AV made contact \
+                           with the rear of the parked van.";
+
+/// Who is told to have come there and parked has not stood from the start; it stands at the contact, though.
+#[test]
+fn who_came_and_parked_stands_when_it_is_struck() {
+    let account = story(PARKS_AHEAD);
+    let made = reconstruct(&account).expect("it can be staged");
+    let shown = |draft: &ScenarioDraft| {
+        let scenario = recrash_roads::check(draft.clone()).expect("it can run").value;
+        let verdict = held_against(&account, &scenario, &simulate(&scenario, Ego::Recorded)).expect("it can be staged");
+        let result = |kind| verdict.checks.iter().find(|check| check.kind == kind).map(|check| check.result);
+        [CheckKind::CpState, CheckKind::CpActs].map(|kind| result(kind) == Some(CheckResult::Shown))
+    };
+    assert_eq!(shown(&made.draft), [true, false], "the rules draw it as standing there: {:?}", made.draft.actors);
+    // It comes 12 m and stops there; or it never does.
+    let comes = |stops_after_m: f64| {
+        let mut draft = made.draft.clone();
+        let plan = &mut draft.actors.iter_mut().find(|actor| actor.id == "cp").expect("a partner").plan;
+        let at = partner(&made).1.position();
+        plan.start = Place::at(at.x - 12.0, at.y, 0.0);
+        plan.speed_mps = 4.0;
+        plan.course = vec![Leg::Curve { to: Place::at(at.x + 30.0, at.y, 0.0), reverse: false }];
+        let stop = Deed::Stop { rate_mps2: 1.0, at_m: Some(stops_after_m) };
+        plan.acts = vec![Act { id: None, when: None, delay_s: 0.0, deed: stop }];
+        draft
+    };
+    assert_eq!(shown(&comes(12.0)), [true, true]);
+    let mut rolls = comes(12.0);
+    rolls.actors.iter_mut().find(|actor| actor.id == "cp").expect("a partner").plan.acts[0].deed =
+        Deed::Speed { to_mps: 0.3, rate_mps2: 1.0 };
+    assert!(!shown(&rolls)[0], "it rolls when it is struck, or is not struck");
 }
