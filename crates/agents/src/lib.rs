@@ -151,6 +151,16 @@ pub enum AgentError {
         /// What was wrong with the last answer.
         problem: String,
     },
+    /// The model says that the reports do not tell what a scenario is held against.
+    #[error(
+        "{model} says that the reports do not tell what is checked: {facts}; correct the account, or have a model read it"
+    )]
+    FactsDisputed {
+        /// Model.
+        model: String,
+        /// Which facts, and what is told instead, in its words.
+        facts: String,
+    },
     /// The model was not asked, or could not be.
     #[error(transparent)]
     Ask(#[from] llm::AskError),

@@ -20,6 +20,11 @@ pub(super) struct RestageAnswer {
     #[serde(default)]
     #[schemars(length(max = 300))]
     note: String,
+    /// Told facts of the list that the reports do not tell, each with what they tell instead, where the crash cannot be shown as told beside
+    /// them. Then nothing is changed, and the account is a person's to correct.
+    #[serde(default)]
+    #[schemars(length(max = 8), inner(length(max = 200)))]
+    wrong_facts: Vec<String>,
     /// How the subject vehicle drove, where that is otherwise.
     #[serde(default)]
     ego: Option<EgoAnswer>,
@@ -128,7 +133,8 @@ impl LanguageModel<'_> {
     /// given, where it changed nothing.
     ///
     /// # Errors
-    /// [`AgentError`], where the answers are used up before the model is content with a scenario that misses no told fact.
+    /// [`AgentError`], where the answers are used up before the model is content with a scenario that misses no told fact, or it says that
+    /// the reports tell something else than is checked.
     pub fn restage(
         &self,
         brief: &Brief,
@@ -142,6 +148,11 @@ impl LanguageModel<'_> {
             let answered = read(&exchange.answer, &[], &question.schema).and_then(fitting::<RestageAnswer>);
             let of_form = answered.is_err();
             let step = match answered {
+                Ok(answer) if !answer.as_told && !answer.wrong_facts.is_empty() => {
+                    let facts: Vec<String> = answer.wrong_facts.iter().map(|fact| in_one_line(fact)).collect();
+                    let (model, facts) = (self.model.to_owned(), facts.join("; "));
+                    return Err(AgentError::FactsDisputed { model, facts });
+                }
                 Ok(answer) if answer.as_told && now.missed.is_empty() => return Ok(now),
                 Ok(answer) if answer.as_told => Err(vec![prompts::missed(&now.missed)]),
                 Ok(answer) => {

@@ -103,6 +103,19 @@ fn a_change_is_staged_and_its_replay_goes_back_until_the_model_is_content() {
 }
 
 #[test]
+fn a_fact_that_the_reports_do_not_tell_ends_it() {
+    let wrong =
+        json!({"as_told": false, "note": "", "wrong_facts": ["approach: from behind;\n it is told from ahead"]});
+    let (made, _, staged) = restaged(&[&with("cp", -9.0), &wrong], 3);
+    assert_eq!(staged.len(), 1);
+    let why = made.unwrap_err().to_string();
+    assert!(
+        why.starts_with("m says that the reports do not tell what is checked: approach: from behind; it is told"),
+        "{why}"
+    );
+}
+
+#[test]
 fn a_road_that_is_otherwise_takes_the_place_of_the_one_with_its_id() {
     let road = |id: &str, length_m: f64| {
         json!({"id": id, "start": {"at": {"x_m": 0.0, "y_m": 0.0, "heading_deg": 0.0}},
@@ -130,8 +143,11 @@ fn a_lost_fact_a_scenario_that_cannot_run_and_no_change_go_back() {
     assert_eq!(made.unwrap().draft.actors.len(), 2);
     assert_eq!(staged.len(), 3);
     assert!(told.contains("misses no told fact"), "{told}");
+    // Where nothing more is granted, nothing more is asked.
+    let (made, ..) = restaged(&answers[..1], 1);
+    let why = made.unwrap_err().to_string();
+    assert!(why.contains("its last change misses told facts: CP acts: set off; shown is nothing of it"), "{why}");
     for (used, told_then) in [
-        (1, "misses told facts, and cannot be taken like this:\n- CP acts: set off; shown is nothing of it"),
         (2, "as_told is true, and told facts are missed: CP acts: set off"),
         (3, "nothing is otherwise in the answer"),
         (4, "note is empty"),

@@ -201,6 +201,7 @@ pub fn unusable(error: AgentError) -> Result<String, PipelineError> {
         | AgentError::NoRecord { .. }
         | AgentError::TemplateUnknown { .. }
         | AgentError::Prompt(_)
+        | AgentError::FactsDisputed { .. }
         | AgentError::NoUsableAnswer { .. }) => Ok(error.to_string()),
     }
 }
