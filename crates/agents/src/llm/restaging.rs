@@ -148,12 +148,12 @@ impl LanguageModel<'_> {
             let answered = read(&exchange.answer, &[], &question.schema).and_then(fitting::<RestageAnswer>);
             let of_form = answered.is_err();
             let step = match answered {
-                Ok(answer) if !answer.as_told && !answer.wrong_facts.is_empty() => {
+                Ok(answer) if answer.as_told && now.missed.is_empty() => return Ok(now),
+                Ok(answer) if !answer.wrong_facts.is_empty() => {
                     let facts: Vec<String> = answer.wrong_facts.iter().map(|fact| in_one_line(fact)).collect();
                     let (model, facts) = (self.model.to_owned(), facts.join("; "));
                     return Err(AgentError::FactsDisputed { model, facts });
                 }
-                Ok(answer) if answer.as_told && now.missed.is_empty() => return Ok(now),
                 Ok(answer) if answer.as_told => Err(vec![prompts::missed(&now.missed)]),
                 Ok(answer) => {
                     let note = in_one_line(&answer.note);
