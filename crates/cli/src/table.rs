@@ -301,7 +301,7 @@ mod tests {
         let mut table = table(&header).named_by("scenario").whole("what failed").without_first(&spare);
         let rows = [
             ("intersection-straight-departure-30270-6878", "did not react to crossing traffic", "10.6 / 7.0"),
-            ("highway-straight-straight-30530-9093", "was struck by somebody not ahead", "0.2 / 25.6"),
+            ("highway-straight-straight-30530-9093", "was struck from behind or beside", "0.2 / 25.6"),
         ];
         for (name, what, delta_v) in rows {
             let [verdict, found, told] = ["FAIL", "by tuning", "yes"].map(Cell::new);

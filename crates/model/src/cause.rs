@@ -67,17 +67,17 @@ impl Cause {
         match self {
             Self::IgnoredCrossing => "did not react to crossing traffic",
             Self::IgnoredOncoming => "did not react to oncoming traffic",
-            Self::IgnoredAhead => "did not react to somebody ahead",
-            Self::TurnedAcross => "turned across somebody's way",
-            Self::MovedInto => "moved sideways into somebody",
+            Self::IgnoredAhead => "did not react to a road user ahead",
+            Self::TurnedAcross => "turned across another's way",
+            Self::MovedInto => "moved sideways into a road user",
             Self::MetCutIn => "did not react in time to a cut-in",
             Self::FollowedTooClosely => "followed too closely",
             Self::BrakedLate => "braked late",
             Self::BrakedForNothing => "braked for nothing, hit from behind",
             Self::StoodInTheWay => "stood where it blocks others",
             Self::StruckStanding => "was struck while it stood",
-            Self::WasStruck => "was struck by somebody not ahead",
-            Self::HitObject => "hit a thing on its way",
+            Self::WasStruck => "was struck from behind or beside",
+            Self::HitObject => "hit an object on its way",
             Self::LeftRoad => "left the road",
             Self::StoppedForGood => "stopped for good for no reason",
             Self::PassedTooNear => "passed too near",
@@ -120,7 +120,7 @@ impl Failures {
     pub fn told(self) -> impl Iterator<Item = (usize, &'static str)> {
         let all = [
             (self.struck_standing, "struck while it stood"),
-            (self.struck_moving, "struck from where it does not look while it moved or had just stopped"),
+            (self.struck_moving, "struck from behind or beside while it moved or had just stopped"),
             (self.otherwise, "otherwise"),
         ];
         all.into_iter().filter(|(count, _)| *count > 0)
@@ -143,7 +143,8 @@ mod tests {
         let causes = [Some(Cause::WasStruck), Some(Cause::StruckStanding), Some(Cause::BrakedLate), None];
         let counts = Failures::of(causes);
         assert_eq!((counts.struck_standing, counts.struck_moving, counts.otherwise, counts.total()), (1, 1, 2, 4));
-        let words = "1 struck while it stood, 1 struck from where it does not look while it moved or had just stopped, 2 otherwise";
+        let words =
+            "1 struck while it stood, 1 struck from behind or beside while it moved or had just stopped, 2 otherwise";
         assert_eq!(counts.to_string(), words);
         assert_eq!(Failures { otherwise: 2, ..Failures::default() }.to_string(), "2 otherwise");
     }

@@ -81,9 +81,9 @@ impl Hole {
     /// For tables.
     pub fn label(self) -> &'static str {
         match self {
-            Self::NotTold => "none told",
+            Self::NotTold => "none in suite",
             Self::NotMet => "none tested",
-            Self::NotSeen => "nobody saw it",
+            Self::NotSeen => "no incident",
         }
     }
 }

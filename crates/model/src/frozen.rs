@@ -125,7 +125,7 @@ impl About {
 
     /// Its crash type, for tables.
     pub fn crash_type_label(&self) -> &'static str {
-        self.crash_type.map_or("not told", CrashType::label)
+        self.crash_type.map_or("not stated", CrashType::label)
     }
 }
 

@@ -17,7 +17,7 @@ Examples:
   recrash coverage suite --csv coverage.csv              every cell of every table
   recrash coverage suite --json
 
-Covered means: the suite tells the incident's own crash, and the reconstruction shows every told fact that is checked.
+Covered means: the suite tells the incident's own crash, and the reconstruction shows every stated fact that is checked.
 What each cell means, and what this does not claim: docs/models/coverage.md.";
 
 const SEVERITY_EXAMPLES: &str = "\
@@ -90,7 +90,7 @@ pub fn coverage(args: &CoverageArgs, output: Output) -> Result<(), PipelineError
     }
     let CoverageCounts { incidents, tellable, told, met, failed } = corpus.all;
     println!(
-        "\nof {incidents} readable incidents {tellable} can be told, {told} are told in this suite, the ego came into the situation of {met} and failed {failed} of those"
+        "\nof {incidents} readable incidents {tellable} can be reconstructed, {told} are in this suite, the ego came into the situation of {met} and failed {failed} of those"
     );
     if let Some(csv) = &args.csv {
         println!("cells: {}", csv.display());
@@ -99,8 +99,8 @@ pub fn coverage(args: &CoverageArgs, output: Output) -> Result<(), PipelineError
 }
 
 fn overview(corpus: &CorpusCoverage) {
-    title("Cells that incidents stand in, that the suite tells, and that the ego was tested in");
-    let mut rows = table(&["table", "cells", "seen", "told", "tested", "incidents outside"])
+    title("Cells with incidents, with scenarios in this suite, and with tests that met the situation");
+    let mut rows = table(&["table", "cells", "seen", "in suite", "tested", "incidents outside"])
         .without_first(&["incidents outside", "cells"]);
     for table in &corpus.tables {
         let outside: usize = table.outside.iter().map(|outside| outside.counts.incidents).sum();
@@ -117,8 +117,8 @@ fn overview(corpus: &CorpusCoverage) {
 }
 
 fn counted(names: &[&str]) -> Table {
-    table(&[names, &["incidents", "can be told", "told", "tested", "failed", "hole"]].concat())
-        .without_first(&["can be told", "failed"])
+    table(&[names, &["incidents", "reconstructed", "in suite", "tested", "failed", "hole"]].concat())
+        .without_first(&["reconstructed", "failed"])
 }
 
 fn counts(cell: &CoverageCell) -> impl Iterator<Item = Cell> {

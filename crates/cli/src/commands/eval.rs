@@ -1,4 +1,4 @@
-//! `recrash eval`: how well an agent reads records, by labels that people wrote.
+//! `recrash eval`: how well an agent reads records, by labels written by careful readers (language-model agents).
 
 use crate::model_options::AccessArgs;
 use crate::output::{self, Output, title};
@@ -29,8 +29,7 @@ pub struct EvalArgs {
     /// Label file (CSV). [default: the built-in ones: eval/labels.csv for the rules, else eval/accounts.csv]
     #[arg(long, value_name = "FILE")]
     pub labels: Option<PathBuf>,
-    /// SGO crash file (CSV), or the name of a downloaded one; may be given several times. [default: the downloaded ones,
-    /// else ../shared/data/nhtsa]
+    /// SGO crash file (CSV), or the name of a downloaded one; may be given several times. [default: the downloaded ones]
     #[arg(long, value_name = "FILE", num_args = 1..)]
     pub records: Vec<PathBuf>,
     /// Which half of the labels: dev, held-out or both. Disagreements on the held-out half are listed only where it is

@@ -164,7 +164,7 @@ pub enum Command {
     Severity(assess::SeverityArgs),
     /// Write a folder of evidence: claims with numbers, and a checker that works each of them out again.
     Evidence(evidence::EvidenceArgs),
-    /// Say how well the reader, the rules or a model read records: accuracy by field against labels that people wrote.
+    /// Say how well the reader, the rules or a model read records: accuracy by field against labels of independent readers (language-model agents).
     Eval(eval::EvalArgs),
     /// Show what a language model would be asked, without asking it.
     Prompt(prompt::PromptArgs),

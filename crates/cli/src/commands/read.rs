@@ -112,7 +112,7 @@ fn types(read: &Accounts) {
         let count = |wanted: &dyn Fn(&Account) -> bool| of_kind.iter().filter(|account| wanted(account)).count();
         use recrash_model::account::{Driver, Role};
         table.add_row(vec![
-            Cell::new(kind.map_or("not told", CrashType::label)),
+            Cell::new(kind.map_or("not stated", CrashType::label)),
             number(of_kind.len()),
             number(format!("{:.1} %", 100.0 * of_kind.len() as f64 / all.max(1) as f64)),
             number(count(&|account| told(&account.role) == Some(Role::Responder))),
@@ -126,7 +126,7 @@ fn types(read: &Accounts) {
 /// Prints how often each fact is told, so that silence cannot pass for truth.
 fn facts(accounts: &[Account]) {
     title("Facts");
-    let mut table = table(&["fact", "in words", "by column", "by rule", "not told"]);
+    let mut table = table(&["fact", "in words", "by column", "by rule", "not stated"]);
     let mut row = |name: &str, of: &dyn Fn(&Account) -> Option<Source>| {
         let mut counts = [0_usize; 4];
         for account in accounts {
@@ -230,7 +230,7 @@ fn highlighted(narrative: &str, spans: &[(usize, usize)]) -> String {
 fn text(value: &Value) -> String {
     match value {
         Value::String(text) => text.clone(),
-        Value::Null => "not told".to_owned(),
+        Value::Null => "not stated".to_owned(),
         Value::Array(values) => values.iter().map(text).collect::<Vec<_>>().join(", "),
         Value::Object(fields) => match (fields.get("mps").and_then(Value::as_f64), fields.get("meaning")) {
             (Some(mps), Some(meaning)) => format!("{mps:.1} m/s ({})", text(meaning)),
@@ -280,7 +280,7 @@ mod tests {
         for (value, says) in [
             (serde_json::json!({ "mps": 0.89408, "meaning": "approach" }), "0.9 m/s (approach)"),
             (serde_json::json!({ "stall": { "side": "right" } }), "stall side right"),
-            (serde_json::json!({ "driveway": { "side": null } }), "driveway side not told"),
+            (serde_json::json!({ "driveway": { "side": null } }), "driveway side not stated"),
             (serde_json::json!({ "device": "signal", "state": "red" }), "device signal, state red"),
             (serde_json::json!("front"), "front"),
             (serde_json::json!(true), "true"),

@@ -19,7 +19,7 @@ Examples:
   recrash reconstruct                                      the built-in sample
   recrash reconstruct archive.csv current.csv              how many crashes can be shown as they are told, by type
   recrash reconstruct archive.csv --to-dir scenes          the scenarios, a file an incident
-  recrash reconstruct archive.csv --report 30270-7733      one: each told fact, and what the rollout shows
+  recrash reconstruct archive.csv --report 30270-7733      one: each stated fact, and what the rollout shows
   recrash simulate scenes/incident-X.json --ego recorded   the crash as it is told
   recrash simulate scenes/incident-X.json --ego idm        another driver in its place, from the handover on
 
@@ -121,14 +121,23 @@ fn json(read: &Accounts, retold: &[Retold]) -> serde_json::Value {
 fn types(read: &Accounts, retold: &[Retold]) {
     type_table(&type_shares(&read.accounts, retold));
     println!("{} incidents, {} with a narrative that can be read", read.incidents.len(), read.accounts.len());
-    println!("told, and not drawn yet: lanes for buses, some others in the story; work zones are not looked at");
+    println!("stated, but not drawn yet: lanes for buses, some others in the story; work zones are not looked at");
 }
 
 /// Prints how much of each crash type is told.
 pub fn type_table(types: &[TypeShare]) {
-    title("Readable incidents: no told fact shown otherwise, nothing that the two did left out");
-    let mut table =
-        table(&["type", "incidents", "told", "share", "all facts shown", "a fact not drawn", "facts per 100 words"]);
+    title(
+        "Readable incidents whose crash is reconstructed: no stated fact contradicted, nothing that the two did left out",
+    );
+    let mut table = table(&[
+        "type",
+        "incidents",
+        "reconstructed",
+        "share",
+        "all facts shown",
+        "a fact not drawn",
+        "facts per 100 words",
+    ]);
     let mut row = |label: &str, incidents: usize, told: usize, whole: usize, facts: String| {
         let share = format!("{:.1} %", 100.0 * told as f64 / incidents.max(1) as f64);
         table.add_row(vec![
@@ -142,7 +151,7 @@ pub fn type_table(types: &[TypeShare]) {
         ]);
     };
     for share in types {
-        let label = share.crash_type.map_or("not told", CrashType::label);
+        let label = share.crash_type.map_or("not stated", CrashType::label);
         row(label, share.incidents, share.told, share.whole, format!("{:.1}", share.facts_per_100_words));
     }
     let sum = |of: fn(&TypeShare) -> usize| types.iter().map(of).sum();
@@ -169,19 +178,19 @@ fn reasons(retold: &[Retold]) {
     println!("{table}");
 }
 
-/// How many told facts no reconstruction draws, in a sentence.
+/// How many stated facts no reconstruction draws, in a sentence.
 pub fn not_drawn(facts: &[FactShare]) -> String {
     let sum = |of: fn(&FactShare) -> usize| facts.iter().map(of).sum::<usize>();
+    let [told, shown, not_drawn] = [sum(|share| share.told), sum(|share| share.shown), sum(|share| share.not_drawn)];
     format!(
-        "{} of {} told facts are not drawn: neither shown nor shown otherwise",
-        sum(|share| share.not_drawn),
-        sum(|share| share.told)
+        "of {told} stated facts in all readable incidents {shown} are shown, {not_drawn} are not drawn, {} are of crashes that are not reconstructed or are shown otherwise",
+        told.saturating_sub(shown + not_drawn)
     )
 }
 
-/// Prints the share of told facts that are shown.
+/// Prints the share of stated facts that are shown.
 pub fn fact_table(facts: &[FactShare]) {
-    title("Told facts, over all readable incidents");
+    title("Stated facts, over all readable incidents");
     let mut table = table(&["fact", "told", "shown", "share", "not drawn", "shown otherwise, or no scene"]);
     for share in facts.iter().filter(|share| share.told > 0) {
         let percent = format!("{:.1} %", 100.0 * share.shown as f64 / share.told as f64);
@@ -198,7 +207,7 @@ pub fn fact_table(facts: &[FactShare]) {
 fn one(read: &Accounts, retold: &[Retold]) {
     for each in retold {
         let account: &Account = &read.accounts[each.account];
-        let kind = told(&account.crash_type).map_or("not told", CrashType::label);
+        let kind = told(&account.crash_type).map_or("not stated", CrashType::label);
         title(&format!("Incident {}, report {}, {kind}", account.incident, account.report));
         match &each.result {
             Ok(made) => {
@@ -208,7 +217,7 @@ fn one(read: &Accounts, retold: &[Retold]) {
                         CheckResult::Shown => "yes",
                         CheckResult::NotShown => "no",
                         CheckResult::CannotBeShown => "not drawn",
-                        CheckResult::NotTold => "not told",
+                        CheckResult::NotTold => "not stated",
                     };
                     let cells = [fact.kind.label(), shown, &fact.expected, &fact.observed];
                     table.add_row(cells.into_iter().map(Cell::new).collect::<Vec<_>>());

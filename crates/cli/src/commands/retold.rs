@@ -99,8 +99,8 @@ pub fn show(summary: &Summary, accounts: &AccountSummary, dir: &Path) {
     result(summary);
     let whole: usize = accounts.types.iter().map(|share| share.whole).sum();
     sentence(&format!(
-        "records: {} of {} readable incidents are told, no told fact shown otherwise: {whole} with every told fact shown, {} with told facts \
-         that are not drawn; {} are in this suite; invented: 0",
+        "records: {} of {} readable incidents reconstructed: {whole} show every stated fact, {} contradict none but leave some undrawn; {} are in \
+         this suite; invented: 0",
         accounts.told,
         accounts.readable,
         accounts.told.saturating_sub(whole),
@@ -112,7 +112,10 @@ pub fn show(summary: &Summary, accounts: &AccountSummary, dir: &Path) {
     if summary.sample {
         println!("  the built-in sample, invented; give real crash files with --records FILE");
     }
-    println!("report: {} (every scenario, crash types, why others are not told)", dir.join("report.html").display());
+    println!(
+        "report: {} (every scenario, crash types, why others are not reconstructed)",
+        dir.join("report.html").display()
+    );
 }
 
 /// What the model made of the replays that changes scenarios.
@@ -252,7 +255,7 @@ fn result(summary: &Summary) {
     ));
     if last.beyond_tyres > 0 {
         sentence(&format!(
-            "  in {} of the {} that it passes it brakes harder than tyres give: whether a vehicle would pass them is not told",
+            "  in {} of the {} that it passes it brakes harder than tyres can, so that a real vehicle might not pass",
             last.beyond_tyres,
             last.met - last.failures.total()
         ));
@@ -290,7 +293,7 @@ mod tests {
         assert!(Verdict::Fail < Verdict::Struck && Verdict::Struck < Verdict::Pass && Verdict::Pass < Verdict::Parked);
         let counted = Failures { struck_standing: 12, struck_moving: 9, otherwise: 17 };
         let told = failures(&TestedRuns { ran: 54, met: 51, failures: counted, beyond_tyres: 0 });
-        let words = "38 of 51: 12 struck while it stood, 9 struck from where it does not look while it moved or had just stopped, 17 otherwise";
+        let words = "38 of 51: 12 struck while it stood, 9 struck from behind or beside while it moved or had just stopped, 17 otherwise";
         assert_eq!(told, words);
     }
 }

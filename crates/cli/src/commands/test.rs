@@ -239,7 +239,7 @@ fn show_results(results: &TestResults) {
     }
     let mut rows =
         table(&["crash type", "tests", "passed", "not met", "failed", "not run"]).without_first(&["not run"]);
-    let order = |kind: &str| (kind == "all", kind == "not told");
+    let order = |kind: &str| (kind == "all", kind == "not stated");
     let mut ordered: Vec<(&str, [usize; 5])> = by_type.into_iter().collect();
     ordered.sort_by_key(|(kind, _)| order(kind));
     for (kind, counts) in ordered {
@@ -251,7 +251,7 @@ fn show_results(results: &TestResults) {
     }
     let beyond = results.tests.iter().filter(|test| test.passes_beyond_tyres()).count();
     if beyond > 0 {
-        let words = "of those passed it brakes harder than tyres give: whether a vehicle would pass them is not told";
+        let words = "of those passed it brakes harder than tyres can, so that a real vehicle might not pass";
         screen::sentence(&format!("in {beyond} {words}"));
     }
     show_not_run(results);

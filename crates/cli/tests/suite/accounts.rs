@@ -43,7 +43,8 @@ fn every_case_shows_its_own_crash_and_says_whether_the_system_met_it() {
     let junit = std::fs::read_to_string(place.path("suite/junit.xml")).unwrap();
     assert!(junit.contains("tests=\"12\"") && junit.contains("crash type: "), "{junit}");
     let page = std::fs::read_to_string(place.path("suite/report.html")).unwrap();
-    for words in ["Crash types", "Situation met", "Why the others are not told", "Told facts that are shown"] {
+    for words in ["Crash types", "Situation met", "Why the others are not reconstructed", "Stated facts that are shown"]
+    {
         assert!(page.contains(words), "{words}");
     }
     // Its braking is that of MetaDrive's vehicles: what it passes so is counted.
@@ -51,7 +52,7 @@ fn every_case_shows_its_own_crash_and_says_whether_the_system_met_it() {
     let label = Value::from("braking beyond tyres");
     let brakes = |case: &&Value| case["tuned"]["findings"].as_array().unwrap().contains(&label);
     let (beyond, passed) = (passed.clone().filter(brakes).count(), passed.count());
-    let told = format!("In <b>{beyond} of the {passed}</b> that it passes it brakes harder than tyres give");
+    let told = format!("In <b>{beyond} of the {passed}</b> that it passes it brakes harder than tyres can");
     assert_eq!(page.contains(&told), beyond > 0, "{told}");
     assert!(page.contains("Passes beyond tyres") && passed > 0, "{beyond} of {passed}");
 }

@@ -14,7 +14,7 @@ fn types_and_facts_are_shown_on_a_screen() {
     let place = Place::new();
     let (code, shown, remarks) = place.run(&["read"]);
     assert_eq!(code, 0, "{remarks}");
-    for words in ["Crash types", "Front to rear", "where it came from", "not told", "449 reports = "] {
+    for words in ["Crash types", "Front to rear", "where it came from", "not stated", "449 reports = "] {
         assert!(shown.contains(words), "{words}:\n{shown}");
     }
     assert_eq!(std::fs::read_dir(place.folder()).unwrap().count(), 0, "nothing is written that was not asked for");

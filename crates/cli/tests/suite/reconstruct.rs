@@ -9,12 +9,12 @@ fn shares_reasons_and_facts_are_shown_on_a_screen() {
     let (code, shown, remarks) = place.run(&["reconstruct", "--records", FEW]);
     assert_eq!(code, 0, "{remarks}");
     for words in [
-        "Readable incidents: no told fact shown otherwise, nothing that the two did left out",
+        "Readable incidents whose crash is reconstructed: no stated fact contradicted, nothing that the two did left out",
         "told, and not drawn yet: lanes for buses",
         "Front to rear",
         "Why the others are not",
         "facts per 100",
-        "told facts are not drawn: neither shown nor shown otherwise",
+        "stated facts in all readable incidents",
     ] {
         assert!(shown.contains(words), "{words}:\n{shown}");
     }

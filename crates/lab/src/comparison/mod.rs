@@ -32,7 +32,7 @@ pub fn compare(base: &TestResults, new: &TestResults) -> Comparison {
     let types = CrashType::ALL.into_iter().map(Some).chain([None]);
     let of_type = |kind: Option<CrashType>| {
         let members: Vec<&Compared> = tests.iter().filter(|test| test.crash_type == kind).collect();
-        (!members.is_empty()).then(|| row(kind.map_or("not told", CrashType::label), &members))
+        (!members.is_empty()).then(|| row(kind.map_or("not stated", CrashType::label), &members))
     };
     Comparison {
         format: COMPARISON_FORMAT,

@@ -60,7 +60,7 @@ pub(super) const ROADS: [PlaceKind; 9] = {
 };
 
 const DEVICES: [ControlDevice; 3] = [ControlDevice::Signal, ControlDevice::StopSign, ControlDevice::YieldSign];
-const NO_CONTROL: &str = "none told";
+const NO_CONTROL: &str = "not stated";
 
 const PARTNERS: [KindGroup; 8] = {
     use KindGroup::{Animal, Car, Cyclist, Motorcycle, Object, OnFoot, Other, Truck};

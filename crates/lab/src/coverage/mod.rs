@@ -153,7 +153,7 @@ impl Plan {
 }
 
 /// What a value that nobody tells is called.
-const NOT_TOLD: &str = "not told";
+const NOT_TOLD: &str = "not stated";
 
 /// Whether a value of a cell is not told; of a pair, the value stands behind its axis.
 fn is_untold(values: &[String]) -> bool {

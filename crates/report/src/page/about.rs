@@ -101,7 +101,7 @@ fn remarks(diagnostics: &[Diagnostic]) -> Markup {
             p { @for (code, n) in &codes { span.tag { code { (words::clean(code, 80)) } " " (n) } " " } }
             details { summary { "List" @if diagnostics.len() > LONGEST_LIST { " (the first " (LONGEST_LIST) " of " (thousands(diagnostics.len())) ")" } }
                 .table-wrap { table.plain {
-                    thead { tr { th scope="col" { "Severity" } th scope="col" { "Where" } th scope="col" { "What" } th scope="col" { "How to mend it" } } }
+                    thead { tr { th scope="col" { "Severity" } th scope="col" { "Where" } th scope="col" { "What" } th scope="col" { "How to fix it" } } }
                     tbody { @for diagnostic in diagnostics.iter().take(LONGEST_LIST) {
                         tr {
                             td { (words::name(&diagnostic.severity)) }
@@ -119,25 +119,28 @@ fn remarks(diagnostics: &[Diagnostic]) -> Markup {
 /// Words of a suite that goes by accounts.
 const OF_ACCOUNTS: [(&str, &str); 11] = [
     (
-        "Told, not told",
-        "An incident is told where a reconstruction shows every checked fact of its narratives; else it is not told, and why is counted. A single fact is not told where no narrative states it.",
+        "Reconstructed, stated",
+        "An incident is reconstructed where its scenario contradicts no fact of its reports and leaves out nothing that the two did; else the reason is counted. A fact is stated where a narrative or a column says it, as far as the program read it: what it misread, it cannot notice.",
     ),
     (
         "Crash type",
-        "What the vehicles were doing to each other, such as front to rear; “not told” where the narrative does not say.",
+        "What the vehicles were doing to each other, such as front to rear; “not stated” where the narrative does not say.",
     ),
     (
         "Initiator, responder",
         "Whose move brought the conflict about, and who had to answer it. Said of the subject vehicle.",
     ),
-    ("As told", "The run of the recorded driver, in the crash as reconstructed: it is held against the record."),
+    (
+        "As told",
+        "The run of the recorded driver, a script that does what the report says, in the crash as reconstructed. It is checked against the report.",
+    ),
     (
         "Tested, as reconstructed",
         "The run of the system under test in the same crash: it takes over from the recorded driver at the handover.",
     ),
     (
         "Tuned, after tuning",
-        "The system under test after a search over what the report leaves open, for the nearest failure. Every scenario of it shows the told facts too, and it is not the crash as reconstructed. “Found by tuning”: it passes that, and fails here.",
+        "The system under test after a search over what the report leaves open, for the nearest failure. Every scenario that it tries shows the stated facts too, but it is not the crash as reconstructed. “Found by tuning”: it passes that, and fails here.",
     ),
     (
         "Situation met",
@@ -145,7 +148,7 @@ const OF_ACCOUNTS: [(&str, &str); 11] = [
     ),
     (
         "Struck standing, struck moving, otherwise",
-        "Failures are counted by how they came about. The ego had stood in its own way for a second and somebody drove into it: that has seldom to do with what it drove; whether another ego avoids it stands beside it. It moved, slowed or had just stopped, and was struck from where it does not look, mostly from behind: that hardly has. All others are by what it did or did not do.",
+        "Failures are counted by how they came about. The ego had stood in its own way for a second and somebody drove into it: what it drove seldom has to do with that; whether another ego avoids it is shown beside it. It moved, slowed or had just stopped, and was struck from behind or beside, outside of where a driver looks: often by a partner that does not react to it. All others follow from what it did or did not do.",
     ),
     (
         "Quirk, avoidable, beyond reference, unavoidable, unclear",
@@ -179,11 +182,11 @@ fn glossary(by_account: bool) -> Markup {
         ("Pick", "The record that stands for its cluster. Each pick becomes one scenario."),
         (
             "Faithful",
-            "Every told fact was checked and is shown by what was driven. Computed from the paths, never from the scenario's labels.",
+            "Every stated fact was checked and is shown by what was driven. Computed from the paths, never from the scenario's labels.",
         ),
         (
             "Unchecked",
-            "Nothing speaks against the run, and not every told fact could be checked. It is not called faithful.",
+            "Nothing speaks against the run, and not every stated fact could be checked. It is not called faithful.",
         ),
         (
             "Own, another, invented",

@@ -229,7 +229,7 @@ fn numbers(case: &CaseView) -> Markup {
     };
     let names: Vec<&str> = case.runs().into_iter().map(|(name, _)| name).collect();
     html! {
-        @if names.len() > 1 { p.muted.small { "In each: " (names.join(" \u{2192} ")) "." } }
+        @if names.len() > 1 { p.muted.small { "Each value: " (names.join(" \u{2192} ")) "." } }
         dl.tiles.compact {
             (pair("Least gap", "m", 2, "nobody else and no thing took part", &|run: &RunView| run.min_gap_m()))
             (pair("Least TTC", "s", 2, "they were never on a course to touch", &|run| worst(run, |p| p.min_ttc.map(|t| t.value), true)))

@@ -10,7 +10,7 @@ use recrash_model::metrics::{Check, PartnerMetrics};
 pub fn checks(case: Case) -> Markup {
     let runs = case.view.runs();
     html! {
-        p.muted { "What record and template say, against what was driven. It is computed from the paths, never from the scenario's labels." }
+        p.muted { "What the report says, checked against what was driven. It is computed from the paths, never from the scenario's labels." }
         @if runs.is_empty() { p.empty { "It was not run." } }
         @if !case.view.assumed.is_empty() {
             p { "Chosen, as the report tells nothing of it at the contact: " (case.view.assumed.iter().map(|assumed| words::clean(assumed, 200).into_owned()).collect::<Vec<_>>().join("; ")) "." }

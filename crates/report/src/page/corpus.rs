@@ -13,8 +13,8 @@ pub fn corpus(corpus: &CorpusCoverage) -> Markup {
     let CoverageCounts { incidents, tellable, told, met, failed } = corpus.all;
     html! {
         p.muted {
-            "Of " (thousands(incidents)) " readable incidents " (thousands(tellable)) " can be told, " (thousands(told)) " are told here, the ego came into the situation of "
-            (thousands(met)) " and failed " (thousands(failed)) " of those. Covered means the incident's own crash told, not a file made; one told incident covers a cell."
+            "Of " (thousands(incidents)) " readable incidents " (thousands(tellable)) " can be reconstructed, " (thousands(told)) " are in this suite, the ego came into the situation of "
+            (thousands(met)) " and failed " (thousands(failed)) " of those. Covered means that the incident's own crash is in the suite, not that some file was made; one incident covers a cell."
         }
         @for table in &corpus.tables { (folded(table)) }
     }
@@ -25,14 +25,14 @@ fn folded(table: &CoverageTable) -> Markup {
     html! {
         details {
             summary {
-                (table.name) ": " (thousands(table.told())) " of " (thousands(table.seen())) " cells with incidents are told, " (thousands(table.met())) " tested"
-                @if holes > 0 { ", " b { (thousands(holes)) " told by none" } }
-                span.muted { "; " (thousands(table.unseen())) " of " (thousands(table.possible)) " cells nobody saw" }
+                (table.name) ": " (thousands(table.told())) " of " (thousands(table.seen())) " cells with incidents are in the suite, " (thousands(table.met())) " tested"
+                @if holes > 0 { ", " b { (thousands(holes)) " without a scenario" } }
+                span.muted { "; " (thousands(table.unseen())) " of " (thousands(table.possible)) " cells without an incident" }
             }
             @if table.cells.len() <= LONGEST_TABLE { (cells(table)) }
-            (list("Incidents, and none told", &table.holes(Hole::NotTold)))
-            (list("Told, and the ego came into the situation of none", &table.holes(Hole::NotMet)))
-            @if table.cells.len() > LONGEST_TABLE { (list("Nobody saw", &table.holes(Hole::NotSeen))) }
+            (list("Incidents, but no scenario", &table.holes(Hole::NotTold)))
+            (list("Scenarios, but the situation never met", &table.holes(Hole::NotMet)))
+            @if table.cells.len() > LONGEST_TABLE { (list("No incident", &table.holes(Hole::NotSeen))) }
             @if table.overlapping { p.muted.small { "An incident may stand in several cells." } }
         }
     }
@@ -44,7 +44,7 @@ fn cells(table: &CoverageTable) -> Markup {
             caption.hidden-text { (table.name) }
             thead { tr {
                 @for axis in &table.axes { th scope="col" { (axis) } }
-                th.right scope="col" { "Incidents" } th.right scope="col" { "Told" } th.right scope="col" { "Tested" } th.right scope="col" { "Failed" } th scope="col" { "Hole" }
+                th.right scope="col" { "Incidents" } th.right scope="col" { "In suite" } th.right scope="col" { "Tested" } th.right scope="col" { "Failed" } th scope="col" { "Hole" }
             } }
             tbody {
                 @for cell in &table.cells { tr { @for value in &cell.values { td { (value) } } (numbers(&cell.counts)) td { (cell.hole().map_or("", Hole::label)) } } }

@@ -31,8 +31,7 @@ pub fn section(context: &Context) -> Markup {
             .page-head {
                 h1 #findings-title { "Findings about the ego" }
                 p.lead {
-                    b { (words::clean(&context.suite.ego, 60)) } " fails " (context.summary.failed_before) " of " (context.summary.ran)
-                    " scenarios " (untuned(context)) @if context.summary.tuned { " and " (context.summary.failed_after) " after tuning" } ". The other kinds are odd behaviour worth a look."
+                    b { (words::clean(&context.suite.ego, 60)) } " fails " (fails(context)) ". The other kinds are odd behaviour worth a look."
                 }
             }
             .panel { h2 { "Causes of the failures" @if context.summary.tuned { " after tuning" } ": one finding each" } (triage::by_cause(context)) }
@@ -40,6 +39,20 @@ pub fn section(context: &Context) -> Markup {
             .panel { h2 { "By kind" } (by_kind(context)) }
             .panel { h2 { "Every finding" } (every(context)) }
         }
+    }
+}
+
+/// Of how many it fails: where the suite goes by accounts, as the overview counts them, of those in which it met the situation.
+fn fails(context: &Context) -> Markup {
+    let (s, [first, last]) = (&context.summary, context.summary.tested);
+    let (before, after, of) = if context.suite.accounts.is_some() {
+        (first.failures.total(), last.failures.total(), first.met)
+    } else {
+        (s.failed_before, s.failed_after, s.ran)
+    };
+    html! {
+        (before) " of " (of) " scenarios " @if context.suite.accounts.is_some() { "whose situation it met, " } (untuned(context))
+        @if s.tuned { " and " (after) " after tuning" }
     }
 }
 

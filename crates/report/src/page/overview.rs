@@ -30,7 +30,7 @@ pub fn section(context: &Context) -> Markup {
                 }
             }
             @match &suite.accounts { Some(accounts) => (account_tiles(context, accounts)), None => (tiles(context)) }
-            @if let Some(accounts) = &suite.accounts { details.fold { summary { "Crash types: how much of each is told and tested" } (types::types(context, accounts)) } }
+            @if let Some(accounts) = &suite.accounts { details.fold { summary { "Crash types: how much of each is reconstructed and tested" } (types::types(context, accounts)) } }
             @if let Some(corpus) = &suite.corpus { details.fold { summary { "What of the corpus is covered" } (corpus::corpus(corpus)) } }
             h2 { "Scenarios" @if suite.accounts.is_some() { ", the worst first" } }
             noscript { p.banner { "A scenario opens with scripts only. This table, results.csv and the scenario files of the suite need none." } }
@@ -55,7 +55,7 @@ fn sentence(context: &Context) -> Markup {
     let (suite, s) = (context.suite, &context.summary);
     html! {
         b { (thousands(s.origins[0])) " of " (words::count(s.cases, "scenario")) } " tell their own record; "
-        b { (thousands(s.own_faithful)) " of those " (thousands(s.origins[0])) } " show every told fact. "
+        b { (thousands(s.own_faithful)) " of those " (thousands(s.origins[0])) } " show every stated fact. "
         b { (words::clean(&suite.ego, 60)) } " fails " b { (thousands(s.failed_before)) " of the " (thousands(s.ran)) } " that ran as designed and "
         b { (thousands(s.failed_after)) } " after tuning"
         @if s.passed_before() > 0 {
@@ -76,12 +76,12 @@ fn account_sentence(context: &Context, accounts: &AccountSet) -> Markup {
     let (suite, s) = (context.suite, &context.summary);
     let [first, last] = s.tested;
     html! {
-        b { (thousands(accounts.told.len())) " of " (thousands(accounts.readable)) } " readable incidents are reconstructed with no told fact shown otherwise and nothing left out that the two did, "
-        (thousands(accounts.types.iter().map(|share| share.whole).sum())) " of them with every told fact shown. Told is what the program read in a report: what it misread, it does not find so. "
-        @if s.cases < accounts.told.len() { b { (thousands(s.cases)) } " of them were picked. " } @else { "All of them are here. " }
-        "In the crashes as reconstructed " b { (words::clean(&suite.ego, 60)) } ", from the handover on, came into the situation of its record in " b { (thousands(first.met)) " of the " (thousands(first.ran)) } " that it drove, and fails "
-        b { (thousands(first.failures.total())) " of those " (thousands(first.met)) } @if first.failures.total() > 0 { ": " (manners(first.failures)) } ". A blow to an ego that stood has seldom to do with what it drove, and one from where it does not look hardly has. "
-        @if s.tuned { "After tuning within what the reports leave open it fails " b { (thousands(last.failures.total())) " of " (thousands(last.met)) } @if last.failures.total() > 0 { ": " (manners(last.failures)) } "; " (thousands(s.by_tuning)) " of them after tuning alone" } @else { "Tuning within what the reports leave open kept no other scenario" }
+        b { (thousands(accounts.told.len())) " of " (thousands(accounts.readable)) } " readable incidents are reconstructed: no stated fact is contradicted, and nothing that the two did is left out. "
+        (thousands(accounts.types.iter().map(|share| share.whole).sum())) " show every stated fact. Stated is what the program read in a report; it cannot notice its own misreadings. "
+        @if s.cases < accounts.told.len() { b { (thousands(s.cases)) } " were selected. " } @else { "All of them are here. " }
+        b { (words::clean(&suite.ego, 60)) } " drove " (thousands(first.ran)) " of them from the handover on, and got into the reported situation in " b { (thousands(first.met)) } ". As reconstructed it fails "
+        b { (thousands(first.failures.total())) " of those " (thousands(first.met)) } @if first.failures.total() > 0 { ": " (manners(first.failures)) } ". (What the ego drove has seldom to do with being struck while it stands, and little with being struck from behind.) "
+        @if s.tuned { "After tuning, within what the reports leave open, it fails " b { (thousands(last.failures.total())) " of " (thousands(last.met)) } @if last.failures.total() > 0 { ": " (manners(last.failures)) } "; " (thousands(s.by_tuning)) " of them after tuning alone" } @else { "Tuning within what the reports leave open kept no other scenario" }
         @if s.parked > 0 { "; in " (thousands(s.parked)) " it was parked, and there is nothing to test" }
         (beyond_tyres(last))
         ". A failure is a contact, a box gap below " (fixed(suite.profile.failure.min_gap_m, 1).unwrap_or_default())
@@ -93,7 +93,7 @@ fn account_sentence(context: &Context, accounts: &AccountSet) -> Markup {
 fn beyond_tyres(tested: Tested) -> Markup {
     html! {
         @if tested.beyond_tyres > 0 {
-            ". In " b { (thousands(tested.beyond_tyres)) " of the " (thousands(tested.passed())) } " that it passes it brakes harder than tyres give: whether a vehicle would pass them is not told"
+            ". In " b { (thousands(tested.beyond_tyres)) " of the " (thousands(tested.passed())) } " that it passes it brakes harder than tyres can, so that a real vehicle might not pass"
         }
     }
 }
@@ -126,15 +126,15 @@ fn account_tiles(context: &Context, accounts: &AccountSet) -> Markup {
                 Some((parts::share(accounts.readable, accounts.incidents), "plain")),
             ))
             (tile(
-                "Own crash told",
+                "Reconstructed",
                 html! { (thousands(accounts.told.len())) span.of { " of " (thousands(accounts.readable)) } },
-                html! { "readable incidents, no told fact shown otherwise, nothing left out that the two did; invented: 0" },
+                html! { "readable incidents: no stated fact contradicted, nothing that the two did left out; invented: 0" },
                 Some((parts::share(accounts.told.len(), accounts.readable), "good")),
             ))
             (tile(
                 "Crash types in the suite",
                 html! { (here.len()) span.of { " of " (types(|_| true)) } },
-                html! { "that occur; " (types(|share| share.told > 0)) " of them can be told" },
+                html! { "that occur; " (types(|share| share.told > 0)) " of them can be reconstructed" },
                 None,
             ))
             (tile(
@@ -199,7 +199,7 @@ fn tiles(context: &Context) -> Markup {
                 Some((parts::share(s.origins[0], s.cases), "plain")),
             ))
             (tile(
-                "Show every told fact",
+                "Show every stated fact",
                 html! { (thousands(s.own_faithful)) span.of { " of those " (thousands(s.origins[0])) } },
                 html! {
                     (thousands(s.own_unfaithful)) " show something else, " (thousands(s.origins[0] - s.own_faithful - s.own_unfaithful)) " are unchecked or did not run"
@@ -302,7 +302,7 @@ fn table(context: &Context) -> Markup {
     let heads = [
         ("scene", "Scene", None, "paths of ego and partner about the encounter"),
         ("what", "Scenario", Some("order"), "its id and template"),
-        ("crash", "Crash told", Some("operator"), "the record that is told: id, operator, city, kind of partner"),
+        ("crash", "Record", Some("operator"), "the record whose crash it is: id, operator, city, kind of partner"),
         ("gap", "Least gap", Some("after"), "box to box, before and after tuning"),
         (
             "impact",
@@ -378,7 +378,7 @@ fn row(context: &Context, position: usize, case: &CaseRow) -> Markup {
                     },
                 }
             }
-            td.injury { @match context.told.at(position) { Some(record) => (search::injury(record)), None => (missing("no record is told")) } }
+            td.injury { @match context.told.at(position) { Some(record) => (search::injury(record)), None => (missing("it tells no record")) } }
             td.ego { (ego(case, not_run)) }
             td.true {
                 (parts::faithful_chip(case.telling_run().map(|run| &run.judgement), case.origin.as_ref()))

@@ -118,7 +118,7 @@ pub fn check_chip(result: CheckResult) -> Markup {
         CheckResult::Shown => html! { span.chip.good { "shown" } },
         CheckResult::NotShown => html! { span.chip.bad { "not shown" } },
         CheckResult::CannotBeShown => html! { span.chip.odd { "cannot be shown" } },
-        CheckResult::NotTold => html! { span.chip.none { "not told" } },
+        CheckResult::NotTold => html! { span.chip.none { "not stated" } },
     }
 }
 

@@ -13,9 +13,9 @@ pub fn types(context: &Context, accounts: &AccountSet) -> Markup {
         .table-wrap { table.plain {
             caption.hidden-text { "Readable incidents by crash type" }
             thead { tr {
-                th scope="col" { "Type" } th.number scope="col" { "Readable incidents" } th.number scope="col" title="a told fact is shown, or not drawn" { "Told: no fact shown otherwise" }
-                th.number scope="col" title="no told fact was left open" { "Of those, every fact shown" }
-                th.number scope="col" title="a told fact that the scene neither shows nor shows otherwise" { "A fact not drawn" }
+                th scope="col" { "Type" } th.number scope="col" { "Readable incidents" } th.number scope="col" title="no stated fact is contradicted, and nothing that the two did is left out" { "Reconstructed" }
+                th.number scope="col" title="no stated fact was left open" { "Of those, every stated fact shown" }
+                th.number scope="col" title="a stated fact that the scene neither shows nor shows otherwise" { "A fact not drawn" }
                 th.number scope="col" title="facts that stand in the narratives, for every 100 words" { "Facts per 100 words" }
                 th.number scope="col" { "Scenarios here" } th.number scope="col" title="in the crash as reconstructed" { "Situation met" }
                 th.number scope="col" title="of those, in the crash as reconstructed" { "Ego fails" } th.number scope="col" title="within what the report leaves open" { "After tuning" }
@@ -24,11 +24,11 @@ pub fn types(context: &Context, accounts: &AccountSet) -> Markup {
         } }
         .two {
             div {
-                h3 { "Why the others are not told" }
+                h3 { "Why the others are not reconstructed" }
                 (reasons(accounts))
             }
             div {
-                h3 { "Told facts that are shown, over all readable incidents" }
+                h3 { "Stated facts that are shown, over all readable incidents" }
                 (facts(accounts))
             }
         }
@@ -51,7 +51,7 @@ fn crash_type(share: &TypeShare, cases: &[CaseRow]) -> Markup {
     let failed = [count(CaseRow::first_run, true), count(CaseRow::last_run, true)];
     html! {
         tr {
-            th scope="row" { (share.crash_type.map_or("not told", CrashType::label)) }
+            th scope="row" { (share.crash_type.map_or("not stated", CrashType::label)) }
             td.number { (thousands(share.incidents)) }
             td.number { (thousands(share.told)) span.muted { " (" (percent(share.told, share.incidents)) "\u{a0}%)" } }
             td.number { (thousands(share.whole)) }
@@ -78,11 +78,11 @@ fn reasons(accounts: &AccountSet) -> Markup {
     }
 }
 
-/// How many of the told facts are shown, by kind.
+/// How many of the stated facts are shown, by kind.
 fn facts(accounts: &AccountSet) -> Markup {
     let all = |of: fn(&FactShare) -> usize| accounts.facts.iter().map(of).sum::<usize>();
     html! {
-        p.muted { (thousands(all(|share| share.not_drawn))) " of " (thousands(all(|share| share.told))) " told facts are not drawn: neither shown nor shown otherwise." }
+        p.muted { (thousands(all(|share| share.not_drawn))) " of " (thousands(all(|share| share.told))) " stated facts are not drawn: neither shown nor shown otherwise." }
         table.plain { tbody { @for share in accounts.facts.iter().filter(|share| share.told > 0) {
             tr { th scope="row" { (words::capital(share.fact.label())) } td.number { (thousands(share.shown)) " of " (thousands(share.told)) span.muted { " (" (percent(share.shown, share.told)) "\u{a0}%)" @if share.not_drawn > 0 { ", " (thousands(share.not_drawn)) " not drawn" } } } }
         } } }

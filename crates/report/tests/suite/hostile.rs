@@ -366,7 +366,7 @@ fn the_first_screen_tells_its_denominators_and_nobodys_crash_is_true_to_no_recor
     let demo = suite::demo();
     let page = html(&demo.suite);
     assert!(
-        page.contains("<b>16 of 20 scenarios</b> tell their own record; <b>11 of those 16</b> show every told fact.")
+        page.contains("<b>16 of 20 scenarios</b> tell their own record; <b>11 of those 16</b> show every stated fact.")
     );
     // The sixth tells nobody's crash, and its run shows what it should.
     assert!(demo.suite.cases[5].last_run().is_some_and(|run| run.faithful() == recrash_model::metrics::Answer::Yes));

@@ -147,13 +147,13 @@ fn the_page_counts_the_runs_of_the_system_alone_and_both_of_them() {
     let page = html(&retold());
     let text = page.replace("<b>", "").replace("</b>", "");
     for words in [
-        "fails 2 of those 4: 1 struck while it stood, 1 otherwise.",
-        "it fails 3 of 4: 1 struck while it stood, 1 struck from where it does not look while it moved or had just stopped, 1 otherwise; 1 of them after tuning alone",
-        "fails 2 of 4 scenarios as reconstructed and 3 after tuning",
+        "As reconstructed it fails 2 of those 4: 1 struck while it stood, 1 otherwise.",
+        "it fails 3 of 4: 1 struck while it stood, 1 struck from behind or beside while it moved or had just stopped, 1 otherwise; 1 of them after tuning alone",
+        "fails 2 of 4 scenarios whose situation it met, as reconstructed and 3 after tuning",
     ] {
         assert!(text.contains(words), "{words}");
     }
-    assert!(page.contains("2 of 7 told facts are not drawn: neither shown nor shown otherwise."));
+    assert!(page.contains("2 of 7 stated facts are not drawn: neither shown nor shown otherwise."));
     assert!(page.contains(", 2 not drawn"), "with the fact");
     assert!(!page.contains("while driving"), "some of them were struck as they slowed");
     // Contacts by kind: two as reconstructed, three after tuning, and none of the recorded driver's four.

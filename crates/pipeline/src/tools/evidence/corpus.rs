@@ -70,7 +70,7 @@ pub fn claims(all: &mut Structure<'_>, there: bool) {
     all.add(
         "C5",
         "context",
-        "A cell is told where the suite holds the own crash of at least one of its incidents, no told fact shown otherwise; the cells, and what telling one incident does not claim: docs/models/coverage.md.",
+        "A cell is told where the suite holds the own crash of at least one of its incidents, no stated fact shown otherwise; the cells, and what telling one incident does not claim: docs/models/coverage.md.",
         &[],
         &[],
     );
