@@ -1,4 +1,4 @@
-//! Accounts of a reader against labels that people wrote. Described in `docs/models/evaluation.md`.
+//! Accounts of a reader against labels of independent readers. Described in `docs/models/evaluation.md`.
 
 mod scores;
 
