@@ -48,7 +48,7 @@ pub fn contact_geometry(
     let point = shared.centroid().unwrap_or(ego.centre);
     let ego_zone = ContactZone::at(ego, point);
     let other_zone = ContactZone::at(&moved, point);
-    let kind = collision_kind(ego, ego_zone, other, other_zone, other_velocity - ego_velocity);
+    let kind = collision_kind(ego, ego_zone, other, (&moved, other_zone), other_velocity - ego_velocity);
     ContactGeometry { ego_zone, other_zone, kind, point }
 }
 
@@ -73,7 +73,7 @@ fn collision_kind(
     ego: &OrientedBox,
     ego_zone: ContactZone,
     other: &OrientedBox,
-    other_zone: ContactZone,
+    (touching, other_zone): (&OrientedBox, ContactZone),
     relative_velocity: Vec2,
 ) -> CollisionKind {
     let turn = math::atan2(ego.axis.cross(other.axis), ego.axis.dot(other.axis)).abs();
@@ -93,10 +93,21 @@ fn collision_kind(
     }
     if turn >= math::PI - ALIGNED_RAD {
         let fronts = ego_zone.is_front() && other_zone.is_front();
-        let head_on = fronts && lateral_overlap_share(ego, other) >= HEAD_ON_LATERAL_SHARE;
-        return if head_on { CollisionKind::HeadOn } else { CollisionKind::Sideswipe };
+        let blow = || {
+            lateral_overlap_share(ego, other) >= HEAD_ON_LATERAL_SHARE
+                || meets_with_ends(ego, touching, relative_velocity)
+        };
+        return if fronts && blow() { CollisionKind::HeadOn } else { CollisionKind::Sideswipe };
     }
     CollisionKind::Angle
+}
+
+/// Whether two who touch do so with their ends, and close on each other there by half of their relative velocity or more: corners that
+/// catch each other do not slide past.
+fn meets_with_ends(ego: &OrientedBox, touching: &OrientedBox, relative_velocity: Vec2) -> bool {
+    let closing = -relative_velocity;
+    let normal = ego.contact_normal(touching, closing);
+    2.0 * math::sq(normal.dot(ego.axis)) > 1.0 && 2.0 * closing.dot(normal) >= closing.length()
 }
 
 /// How much of the narrower one's width the two share, seen along the ego's heading; negative where they are apart.
@@ -170,7 +181,9 @@ mod tests {
     fn oncoming_fronts_are_a_head_on_collision_and_oncoming_sides_a_sideswipe() {
         assert_eq!(geometry((3.9, 0.0, 180.0), (10.0, 5.0)), (Z::Front, Z::Front, CollisionKind::HeadOn));
         assert_eq!(geometry((3.9, 1.2, 175.0), (10.0, 5.0)), (Z::FrontLeft, Z::FrontLeft, CollisionKind::HeadOn));
-        assert_eq!(geometry((3.9, 1.8, 180.0), (10.0, 5.0)), (Z::FrontLeft, Z::FrontLeft, CollisionKind::Sideswipe));
+        // Corners that catch each other, as the velocities say, and such that have slid past each other's ends.
+        assert_eq!(geometry((3.9, 1.8, 180.0), (10.0, 5.0)), (Z::FrontLeft, Z::FrontLeft, CollisionKind::HeadOn));
+        assert_eq!(geometry((3.5, 1.95, 176.0), (10.0, 5.0)), (Z::FrontLeft, Z::FrontLeft, CollisionKind::Sideswipe));
         assert_eq!(geometry((0.0, 1.9, 178.0), (10.0, 5.0)), (Z::Left, Z::Left, CollisionKind::Sideswipe));
     }
 

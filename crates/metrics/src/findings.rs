@@ -1,6 +1,6 @@
 //! Findings: what a rollout shows about the ego, one sentence each.
 
-use crate::scene::{STANDSTILL_MPS, first_step, time_of};
+use crate::scene::{STANDSTILL_MPS, first_step, gap_at, time_of, with_parts};
 use recrash_model::metrics::{EgoMetrics, Finding, FindingKind, Metrics, Timed};
 use recrash_model::profile::FailureCriteria;
 use recrash_model::rollout::{EventKind, Role, Rollout, TerminationKind};
@@ -98,13 +98,10 @@ fn near_misses<'a>(
         })
 }
 
-/// Box gap between the ego and another at the first step that counts. [m]
+/// Box gap between the ego and another at the first step that counts, parts of both included. [m]
 fn first_gap_m(rollout: &Rollout, first: usize, actor: usize) -> f64 {
-    let there = |actor: usize| rollout.actors.get(actor).filter(|track| first < track.states.len());
-    match (there(0), there(actor)) {
-        (Some(ego), Some(other)) => ego.outline(first).gap(&other.outline(first)),
-        _ => 0.0,
-    }
+    let gap_m = gap_at(rollout, (&with_parts(rollout, 0), &with_parts(rollout, actor)), first);
+    if gap_m.is_finite() { gap_m } else { 0.0 }
 }
 
 fn ending(rollout: &Rollout, metrics: &Metrics, criteria: &FailureCriteria) -> Option<Finding> {

@@ -3,8 +3,9 @@
 use crate::contact::contact_geometry;
 use crate::ego::{following, measure_ego};
 use crate::encroachment::post_encroachment_time;
-use crate::scene::{Along, EgoWay, Scene, time_of};
+use crate::scene::{Along, EgoWay, Scene, gap_at, time_of, with_parts};
 use crate::swept::time_to_collision;
+use recrash_model::geometry::OrientedBox;
 use recrash_model::metrics::{Contact, Metrics, PartnerMetrics, PartnerSeries, Series, Timed};
 use recrash_model::profile::FailureCriteria;
 use recrash_model::rollout::{EventKind, Role, Rollout, STEP_S};
@@ -45,11 +46,13 @@ pub fn series(rollout: &Rollout) -> Series {
             partners: Vec::new(),
         };
     };
+    let mine = with_parts(rollout, 0);
     let speeds = |actor: usize| rollout.actors[actor].states.iter().map(|state| state.speed()).collect::<Vec<f64>>();
     let partners = rollout.actors.iter().enumerate().filter(|(_, track)| track.role == Role::Partner);
     let partners = partners
         .map(|(actor, track)| {
             let steps = ego.states.len().min(track.states.len());
+            let theirs = with_parts(rollout, actor);
             let mut series = PartnerSeries {
                 actor,
                 id: track.id.clone(),
@@ -62,7 +65,7 @@ pub fn series(rollout: &Rollout) -> Series {
             for step in 0..steps {
                 let (a, b) = (ego.outline(step), track.outline(step));
                 let (velocity_a, velocity_b) = (ego.states[step].velocity(), track.states[step].velocity());
-                series.gap_m.push(a.gap(&b));
+                series.gap_m.push(gap_at(rollout, (&mine, &theirs), step));
                 series.centre_distance_m.push(a.centre.distance(b.centre));
                 series.ttc_s.push(time_to_collision(&a, velocity_a, &b, velocity_b));
             }
@@ -94,6 +97,7 @@ fn measure_partner(scene: &Scene<'_>, way: &EgoWay<'_>, along: &[Along], actor: 
     if steps.is_empty() && touched.is_none() {
         return None;
     }
+    let boxes = Boxes::of(scene, actor);
     let mut min_gap = Timed { value: f64::INFINITY, time_s: 0.0 };
     let mut min_centre_distance = min_gap;
     let (mut min_ttc, mut max_drac, mut max_required_deceleration, mut min_headway) = (None, None, None, None);
@@ -103,12 +107,9 @@ fn measure_partner(scene: &Scene<'_>, way: &EgoWay<'_>, along: &[Along], actor: 
         if distance < min_centre_distance.value {
             min_centre_distance = Timed { value: distance, time_s };
         }
-        // The boxes lie inside circles around their centres: most steps need no exact gap.
-        if distance - ego.radius() - other.radius() < min_gap.value {
-            let gap = ego.gap(other);
-            if gap < min_gap.value {
-                min_gap = Timed { value: gap, time_s };
-            }
+        let gap = boxes.least_gap(step, min_gap.value);
+        if gap < min_gap.value {
+            min_gap = Timed { value: gap, time_s };
         }
         let ttc = time_to_collision(ego, scene.velocity(0, step), other, scene.velocity(actor, step));
         keep_least(&mut min_ttc, ttc, time_s);
@@ -139,6 +140,33 @@ fn measure_partner(scene: &Scene<'_>, way: &EgoWay<'_>, along: &[Along], actor: 
         max_required_deceleration,
         min_headway,
     })
+}
+
+/// The boxes of the ego and of another, with those of their parts.
+struct Boxes<'a> {
+    mine: Vec<&'a [OrientedBox]>,
+    theirs: Vec<&'a [OrientedBox]>,
+}
+
+impl<'a> Boxes<'a> {
+    fn of(scene: &'a Scene<'_>, actor: usize) -> Self {
+        let all = |actor: usize| {
+            let members = with_parts(scene.rollout, actor);
+            members.into_iter().map(|member| scene.outlines[member].as_slice()).collect()
+        };
+        Self { mine: all(0), theirs: all(actor) }
+    }
+
+    /// The least gap of two of them at a step, where that is below what is known already.
+    fn least_gap(&self, step: usize, known_m: f64) -> f64 {
+        let pairs = self.mine.iter().flat_map(|mine| self.theirs.iter().map(move |theirs| (mine, theirs)));
+        let there = pairs.filter_map(|(mine, theirs)| mine.get(step).zip(theirs.get(step)));
+        there.fold(known_m, |least, (mine, theirs)| {
+            // The boxes lie inside circles around their centres: most steps need no exact gap.
+            let apart = mine.centre.distance(theirs.centre) - mine.radius() - theirs.radius();
+            if apart < least { least.min(mine.gap(theirs)) } else { least }
+        })
+    }
 }
 
 fn keep_least(kept: &mut Option<Timed>, value: Option<f64>, time_s: f64) {

@@ -188,6 +188,25 @@ impl<'a> Scene<'a> {
     }
 }
 
+/// An actor and its parts: a gap to one is a gap to the nearest of them.
+pub(crate) fn with_parts(rollout: &Rollout, actor: usize) -> Vec<usize> {
+    let parts = (0..rollout.actors.len()).filter(|&part| rollout.actors[part].part_of == Some(actor));
+    std::iter::once(actor).chain(parts).collect()
+}
+
+/// Least gap between the boxes of two, each given with its parts, at a step; infinite where one has no state then. [m]
+pub(crate) fn gap_at(rollout: &Rollout, (mine, theirs): (&[usize], &[usize]), step: usize) -> f64 {
+    // Parts of who is not in the world are where it will be.
+    let in_world = |of: &[usize]| if rollout.actors[of[0]].is_present(step) { of.len() } else { 1 };
+    let outlines = |of: &[usize]| -> Vec<OrientedBox> {
+        let tracks = of[..in_world(of)].iter().map(|&actor| &rollout.actors[actor]);
+        tracks.filter(|track| step < track.states.len()).map(|track| track.outline(step)).collect()
+    };
+    let (mine, theirs) = (outlines(mine), outlines(theirs));
+    let gaps = mine.iter().flat_map(|own| theirs.iter().map(|other| own.gap(other)));
+    gaps.fold(f64::INFINITY, f64::min)
+}
+
 /// Time of a step. [s]
 #[inline]
 pub fn time_of(step: usize) -> f64 {

@@ -124,6 +124,12 @@ pub struct OrientedBox {
     pub half_width: f64,
 }
 
+/// The longest physics step in which a run is made: boxes that touch now were apart so long before. [s]
+const TOUCH_S: f64 = 0.025;
+
+/// By so much two boxes may come to overlap within a step without closing: by turning, or by rounding. [m]
+const SLACK_M: f64 = 0.01;
+
 impl OrientedBox {
     /// The box of an actor of this size at this pose. Length and width in m.
     #[inline]
@@ -189,20 +195,27 @@ impl OrientedBox {
     }
 
     /// Normal of the plane in which two boxes touch, from this one to the other: of the four sides' directions, the one on
-    /// which their shadows came to overlap last, by the velocity of this one less that of the other. Boxes that do not come
-    /// nearer on any touch where they overlap least.
+    /// which their shadows came to overlap last, by the velocity of this one less that of the other.
+    ///
+    /// Boxes that touch were apart one physics step before, so a direction whose shadows overlap for longer is none on which
+    /// they can have met. Where none is younger (turning alone brought the boxes together), it is the direction on which they
+    /// overlapped least a step before.
     pub fn contact_normal(&self, other: &Self, relative: Vec2) -> Vec2 {
         let apart = other.centre - self.centre;
-        let directions = [self.axis, self.axis.left(), other.axis, other.axis.left()]
-            .map(|direction| if apart.dot(direction) < 0.0 { -direction } else { direction });
-        let depth = |direction: Vec2| self.reach(direction) + other.reach(direction) - apart.dot(direction);
-        let least = |measure: &dyn Fn(Vec2) -> f64, among: &dyn Fn(Vec2) -> bool| {
-            let candidates = directions.into_iter().filter(|&direction| among(direction));
-            candidates.min_by(|&a, &b| measure(a).total_cmp(&measure(b)))
+        let touch = |direction: Vec2| {
+            let normal = if apart.dot(direction) < 0.0 { -direction } else { direction };
+            let depth_m = self.reach(normal) + other.reach(normal) - apart.dot(normal);
+            let closing_mps = relative.dot(normal);
+            let before_m = depth_m - closing_mps * TOUCH_S;
+            // Flanks that slide along each other hardly close: their overlap is rounding, and as young as the step.
+            let age_s = depth_m / closing_mps.max(SLACK_M / TOUCH_S);
+            (normal, before_m, age_s)
         };
-        let since = |direction: Vec2| depth(direction) / relative.dot(direction);
-        let came_last = least(&since, &|direction| relative.dot(direction) > 1e-6);
-        came_last.or_else(|| least(&depth, &|_| true)).unwrap_or(self.axis)
+        let touches = [self.axis, self.axis.left(), other.axis, other.axis.left()].map(touch);
+        let young = touches.iter().filter(|&&(_, before_m, _)| before_m <= SLACK_M);
+        let last = young.min_by(|a, b| a.2.total_cmp(&b.2));
+        let last = last.or_else(|| touches.iter().min_by(|a, b| a.1.total_cmp(&b.1)));
+        last.map_or(self.axis, |&(normal, ..)| normal)
     }
 
     /// The distance between the boxes, 0 when they touch or overlap. [m]
@@ -322,6 +335,36 @@ mod tests {
         assert!((at(0.0, 0.0, 0.0).depth(&at(0.5, 1.9, 0.0)) - 0.1).abs() < 1e-12);
         assert!((at(0.0, 0.0, 0.0).depth(&at(2.8, 0.0, math::FRAC_PI_2)) - 0.2).abs() < 1e-12);
         assert_eq!(at(0.0, 0.0, 0.0).depth(&at(4.1, 0.0, 0.0)), 0.0);
+    }
+
+    #[test]
+    fn a_flank_that_slides_along_a_corner_touches_with_its_side() {
+        let ego = OrientedBox::new(Pose { position: Vec2::new(-1e-6, 0.0), heading: 0.0 }, 4.515, 1.852);
+        // As it was recorded in a reconstruction: 4 degrees to the ego, beside it, and along its own heading.
+        let pose = Pose { position: Vec2::new(-2.1727780110805615, 1.9574224003236895), heading: 0.06981317007977324 };
+        let partner = OrientedBox::new(pose, 4.87, 2.046);
+        assert!(ego.overlaps(&partner) && ego.depth(&partner) < 1e-4);
+        for drift_mps in [-0.4, -0.001, 0.0, 0.001, 0.2] {
+            let velocity = partner.axis * 7.82 - partner.axis.left() * drift_mps;
+            let normal = ego.contact_normal(&partner, -velocity);
+            assert!((normal - partner.axis.left()).length() < 1e-9, "{drift_mps}: {normal:?}");
+        }
+    }
+
+    #[test]
+    fn a_bumper_that_came_in_within_the_step_is_an_end_also_beside_a_thin_overlap_of_flanks() {
+        let (behind, ahead) = (boxed(-3.9, 1.7, 0.0), boxed(0.0, 0.0, 0.0));
+        assert_eq!(behind.contact_normal(&ahead, Vec2::new(8.0, 0.0)), Vec2::new(1.0, 0.0));
+        // The same overlap, of which the ends are older than a step: the flanks came together.
+        let slides = Vec2::new(2.0, -0.5);
+        assert_eq!(boxed(-3.9, 1.995, 0.0).contact_normal(&ahead, slides), Vec2::new(0.0, -1.0));
+    }
+
+    #[test]
+    fn what_turning_alone_brought_together_touches_where_it_overlapped_least() {
+        // A rear that swings out: 4 cm into the flank beside it, at no velocity of the centre towards it.
+        let (still, swings) = (boxed(0.0, 0.0, 0.0), boxed(1.0, 1.96, 0.0));
+        assert_eq!(swings.contact_normal(&still, Vec2::new(6.0, 0.0)), Vec2::new(0.0, -1.0));
     }
 
     #[test]

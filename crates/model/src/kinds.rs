@@ -56,6 +56,11 @@ impl PartnerKind {
         }
     }
 
+    /// Whether somebody sits in or on it, or it is somebody.
+    pub const fn has_people(self) -> bool {
+        !matches!(self, Self::Animal | Self::FixedObject)
+    }
+
     /// Every kind.
     pub const ALL: [Self; 13] = [
         Self::PassengerCar,

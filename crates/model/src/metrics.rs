@@ -49,7 +49,7 @@ pub struct PartnerMetrics {
     pub actor: usize,
     /// Name.
     pub id: String,
-    /// Least box gap. [m]
+    /// Least box gap, doors, mirrors, arms and trailers of both included. [m]
     pub min_gap: Timed,
     /// Least distance of the centres. [m]
     pub min_centre_distance: Timed,

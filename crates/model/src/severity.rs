@@ -1,5 +1,6 @@
 //! How bad a contact is.
 
+use crate::kinds::PartnerKind;
 use crate::scenario::ObstacleKind;
 use serde::{Deserialize, Serialize};
 
@@ -44,21 +45,25 @@ pub struct Severity {
     /// What the other is, where it is an obstacle.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub obstacle: Option<ObstacleKind>,
+    /// What the other is, where it moves by a plan and nobody sits on it: an animal, debris, a cart.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub nobody: Option<PartnerKind>,
 }
 
 impl Severity {
-    /// What findings are ranked by: the greater change of velocity of the two; of a contact with an obstacle, in which nobody sits, that
-    /// of who struck it. [m/s]
+    /// What findings are ranked by: the greater change of velocity of the two; of a contact with an obstacle, an animal or a thing, in which
+    /// nobody sits, that of the first alone. [m/s]
     pub fn harm_mps(&self) -> f64 {
-        match self.obstacle {
-            None => self.first.delta_v_mps.max(self.second.delta_v_mps),
-            Some(_) => self.first.delta_v_mps,
+        match (self.obstacle, self.nobody) {
+            (None, None) => self.first.delta_v_mps.max(self.second.delta_v_mps),
+            _ => self.first.delta_v_mps,
         }
     }
 
     /// What the other is called in tables.
     pub fn other(&self) -> &'static str {
-        self.obstacle.map_or("partner", ObstacleKind::label)
+        let nobody = self.nobody.map_or("partner", PartnerKind::label);
+        self.obstacle.map_or(nobody, ObstacleKind::label)
     }
 
     /// The greater probability that somebody on one of the two sides is at least seriously injured; `None` where no published

@@ -149,7 +149,7 @@ impl Course {
             return false;
         }
         for arc in &arcs {
-            self.stretch(arc);
+            self.stretch_of(arc);
         }
         self.end_leg(reverse, true);
         true
@@ -169,12 +169,12 @@ impl Course {
         self.end_leg(false, true);
     }
 
-    fn stretch(&mut self, stretch: &Stretch) {
+    fn stretch_of(&mut self, stretch: &Stretch) {
         self.push(SegmentShape::of_line(&stretch.centreline(), stretch.length_m), stretch.length_m, None);
     }
 
     fn straight(&mut self, from: Pose, length_m: f64) {
-        self.stretch(&Stretch { start: from, curvature: 0.0, length_m });
+        self.stretch_of(&Stretch { start: from, curvature: 0.0, length_m });
     }
 
     fn push(&mut self, shape: SegmentShape, length_m: f64, lane: Option<(LaneId, f64)>) {
@@ -231,13 +231,50 @@ impl Course {
         Spot { position: position + forward * beyond, forward, heading, curvature }
     }
 
+    /// How far somebody beside the line drives on its own line, on this piece, for each metre of the course: less than one on
+    /// the inside of a bend, more on the outside. The offset is to the right of the road user. [m]
+    #[inline]
+    pub fn stretch(&self, piece: usize, s_m: f64, reverse: bool, t_m: f64) -> f64 {
+        if t_m == 0.0 { 1.0 } else { stretch(self.spot_on(piece, s_m).curvature, reverse, t_m) }
+    }
+
+    /// Where somebody who keeps its offset beside the line is after it has driven so far on its own line. [m]
+    pub fn after(&self, piece: usize, s_m: f64, reverse: bool, t_m: f64, driven_m: f64) -> f64 {
+        if t_m == 0.0 {
+            return s_m + driven_m;
+        }
+        let (mut at, mut s_m, mut left_m) = (piece, s_m, driven_m);
+        while let Some(next) = self.pieces.get(at + 1) {
+            let by = stretch(self.pieces[at].shape.curvature(), reverse, t_m);
+            let own_m = (next.start_m - s_m).max(0.0) * by;
+            if left_m <= own_m {
+                return s_m + left_m / by;
+            }
+            (left_m, s_m, at) = (left_m - own_m, s_m.max(next.start_m), at + 1);
+        }
+        s_m + left_m / self.stretch(at, s_m, reverse, t_m)
+    }
+
+    /// How far it drives on its own line from one place of the course to one that is ahead; less than nothing where that is
+    /// behind. [m]
+    pub fn driven(&self, piece: usize, (from_m, to_m): (f64, f64), reverse: bool, t_m: f64) -> f64 {
+        if t_m == 0.0 || to_m <= from_m {
+            return to_m - from_m;
+        }
+        let bent_m = |piece: &CoursePiece| {
+            let on_it_m = (piece.start_m + piece.length_m).min(to_m) - piece.start_m.max(from_m);
+            on_it_m.max(0.0) * (stretch(piece.shape.curvature(), reverse, t_m) - 1.0)
+        };
+        to_m - from_m + self.pieces[piece..].iter().map(bent_m).sum::<f64>()
+    }
+
     /// Pose of the centre, its velocity at a speed along the line, and its yaw rate. [m/s, rad/s]
     pub fn motion(&self, piece: usize, s_m: f64, reverse: bool, beside: Beside, speed_mps: f64) -> (Pose, Vec2, f64) {
         let spot = self.spot_on(piece, s_m);
         let gear = if reverse { -1.0 } else { 1.0 };
         let right = -(spot.forward.left() * gear);
         // d(rear axle) / ds.
-        let stretch = (1.0 + gear * spot.curvature * beside.t_m).max(0.05);
+        let stretch = stretch(spot.curvature, reverse, beside.t_m);
         let slope = beside.slope / stretch;
         let way = spot.forward * stretch + right * beside.slope;
         let turned = if beside.slope == 0.0 { 0.0 } else { math::atan(slope) };
@@ -252,6 +289,15 @@ impl Course {
         (Pose { position: rear + axis * self.arm_m, heading }, velocity, yaw_rate)
     }
 }
+
+/// Length of a line beside a bend, of that of the bend. The offset is to the right of who drives there, in this gear. [1/m, m]
+#[inline]
+fn stretch(curvature: f64, reverse: bool, t_m: f64) -> f64 {
+    (1.0 + if reverse { -t_m } else { t_m } * curvature).max(LEAST_STRETCH)
+}
+
+/// Beyond the middle of a bend a line beside it would lead backwards.
+const LEAST_STRETCH: f64 = 0.05;
 
 /// The rear axle's pose of a centre's. [m]
 pub fn rear_of(centre: Pose, arm_m: f64) -> Pose {
@@ -283,6 +329,28 @@ mod tests {
             assert!(forth.position.distance(returning.position) < 1e-9, "{forth:?} {returning:?}");
             assert!(math::wrap_angle(forth.heading - returning.heading).abs() < 1e-9);
             assert!((v + w).length() < 1e-6, "opposite velocities: {v:?} {w:?}");
+        }
+    }
+
+    #[test]
+    fn who_drives_beside_a_bend_comes_as_far_as_it_drives() {
+        let mut course = Course::begin(0.0);
+        course.straight(pose(0.0, 0.0, 0.0), 10.0);
+        course.stretch_of(&Stretch { start: pose(10.0, 0.0, 0.0), curvature: 0.1, length_m: 8.0 });
+        course.straight(course.end_pose().unwrap(), 10.0);
+        course.end_leg(false, true);
+        for (t_m, on_bend_m) in [(3.0, 8.0 * 1.3), (-3.0, 8.0 * 0.7), (0.0, 8.0)] {
+            let whole_m = 10.0 + on_bend_m + 10.0;
+            assert!((course.driven(0, (0.0, 28.0), false, t_m) - whole_m).abs() < 1e-9);
+            assert!((course.after(0, 0.0, false, t_m, whole_m) - 28.0).abs() < 1e-9);
+            // In pieces it is as far as in one go.
+            let mut s_m = 0.0;
+            for _ in 0..100 {
+                let piece = course.piece_at(s_m, 0);
+                s_m = course.after(piece, s_m, false, t_m, 0.01 * whole_m);
+            }
+            assert!((s_m - 28.0).abs() < 1e-9, "{s_m}");
+            assert_eq!(course.after(2, 27.0, false, t_m, 5.0), 32.0, "behind its end it goes straight on");
         }
     }
 

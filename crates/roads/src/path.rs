@@ -131,6 +131,27 @@ impl LanePath {
         }
     }
 
+    /// Where somebody was on the path who has driven so far to `at_m`, `t_m` to the right of it all along: beside a bend its own
+    /// line is longer or shorter. [m]
+    pub fn before(&self, at_m: f64, t_m: f64, driven_m: f64) -> f64 {
+        let (mut s_m, mut left_m) = (at_m, driven_m);
+        let passed = self.segments.iter().rev().filter(|segment| segment.start_m < at_m && t_m != 0.0);
+        for segment in passed {
+            let end_m = segment.start_m + segment.length_m;
+            let beyond_m = (s_m - end_m).max(0.0);
+            let by = (1.0 + t_m * segment.shape.curvature()).max(0.05);
+            let own_m = beyond_m + (s_m.min(end_m) - segment.start_m) * by;
+            if left_m <= beyond_m {
+                break;
+            }
+            if left_m <= own_m {
+                return s_m.min(end_m) - (left_m - beyond_m) / by;
+            }
+            (left_m, s_m) = (left_m - own_m, segment.start_m);
+        }
+        s_m - left_m
+    }
+
     /// Coordinates of a point, looked for from segment `hint` on (a vehicle never goes back).
     #[inline]
     pub fn project(&self, point: Vec2, hint: usize) -> PathPoint {

@@ -22,6 +22,10 @@ const BEFORE_S: f64 = 2.0;
 const REACTION_MPS2: f64 = 1.5;
 /// Braking is taken over this many steps.
 const BRAKING_STEPS: usize = 3;
+/// Who creeps at the contact, drove before and has not stood since, has braked. Assumed. [m/s]
+const CREEPS_MPS: f64 = 1.0;
+const DROVE_MPS: f64 = 3.0;
+const STOOD_MPS: f64 = 0.1;
 /// Braking with nothing in the way counts from here on, and this long before the contact. Assumed. [m/s^2, s]
 const PHANTOM_MPS2: f64 = 2.0;
 const PHANTOM_S: f64 = 4.0;
@@ -220,7 +224,14 @@ impl<'a> Encounter<'a> {
             (states[0].velocity().length() - states[BRAKING_STEPS].velocity().length())
                 / (BRAKING_STEPS as f64 * STEP_S)
         });
-        braking.fold(0.0, f64::max) >= REACTION_MPS2
+        braking.fold(0.0, f64::max) >= REACTION_MPS2 || self.had_braked()
+    }
+
+    /// Whether it creeps, having come down from more and not stood since: it reacted before the window.
+    fn had_braked(&self) -> bool {
+        let speeds = || self.ego.states[..=self.end].iter().rev().map(|state| state.velocity().length());
+        let creeps = speeds().next().is_some_and(|speed| speed < CREEPS_MPS);
+        creeps && speeds().take_while(|speed| *speed >= STOOD_MPS).any(|speed| speed > DROVE_MPS)
     }
 
     /// Whether the gap was small, in time, before either braked.

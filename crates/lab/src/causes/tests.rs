@@ -170,6 +170,20 @@ fn who_braked_braked_late_or_was_too_close() {
 }
 
 #[test]
+fn who_creeps_since_it_braked_has_reacted() {
+    use ContactZone::FrontLeft;
+    let oncoming: Way = |before_s| (4.5 + 6.0 * before_s, 1.8, math::PI, 6.0);
+    let creeps: Way = |before_s| (-0.8 * before_s, 0.0, 0.0, if before_s > 4.0 { 7.0 } else { 0.8 });
+    assert_eq!(told(creeps, oncoming, FrontLeft, None), Some(Cause::BrakedLate));
+    // Who sets off from a stand has not.
+    let sets_off: Way = |before_s| {
+        let speed = if before_s > 4.0 { 7.0 } else { 0.8 * f64::from(u8::from(before_s < 2.5)) };
+        (-0.8 * before_s.min(2.5), 0.0, 0.0, speed)
+    };
+    assert_eq!(told(sets_off, oncoming, FrontLeft, None), Some(Cause::IgnoredOncoming));
+}
+
+#[test]
 fn who_is_hit_from_behind_stood_braked_for_nothing_or_was_struck() {
     use ContactZone::Rear;
     let behind: Way = |before_s| (-4.5 - 15.0 * before_s, 0.0, 0.0, 15.0);

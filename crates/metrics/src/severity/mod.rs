@@ -56,7 +56,7 @@ pub fn severity_of(rollout: &Rollout, metrics: &Metrics) -> Option<Severity> {
             _ => None,
         })?;
         let found = severity(&Party::of(ego, &state), &Party::standing(thing), Impact::default());
-        Some(Severity { obstacle: Some(thing.kind), ..found })
+        Some(Severity { obstacle: Some(thing.kind), nobody: None, ..found })
     })
 }
 
@@ -80,6 +80,7 @@ pub fn severity(first: &Party, second: &Party, impact: Impact) -> Severity {
         first: suffered(first, -impulse, &pair, 0),
         second: suffered(second, impulse, &pair, 1),
         obstacle: None,
+        nobody: Some(second.kind).filter(|kind| !kind.has_people()),
     }
 }
 

@@ -359,6 +359,47 @@ fn a_wall_along_its_way_takes_what_goes_across_it_and_a_contact_with_a_road_user
 }
 
 #[test]
+fn nobody_sits_in_an_animal_or_in_debris_that_moves_by_a_plan() {
+    let network = straight();
+    let way = path(&network, Approach::Same, Turn::Straight, 1);
+    let struck = |kind: PartnerKind, mass_kg: Option<f64>| {
+        let mut rollout = rollout(drive(&way, 5.0, 60, |_| 10.0), vec![drive(&way, 60.0, 60, |_| 0.0)]);
+        let (a_state, mut b_state) = (rollout.actors[0].states[30], rollout.actors[1].states[30]);
+        (rollout.actors[1].kind, rollout.actors[1].mass_kg) = (kind, mass_kg);
+        b_state.x = a_state.x + LENGTH_M - 0.01;
+        rollout.events.push(Event { time_s: 3.0, kind: EventKind::Contact { a: 0, b: 1, a_state, b_state } });
+        recrash_metrics::severity_of(&rollout, &measure(&network, &way, 10.0, &rollout)).expect("they touch")
+    };
+    for (kind, mass_kg) in [(PartnerKind::Animal, None), (PartnerKind::FixedObject, Some(20.0))] {
+        let found = struck(kind, mass_kg);
+        assert!(found.second.delta_v_mps > 9.0 && found.first.delta_v_mps < 1.0, "{found:?}");
+        assert_eq!((found.harm_mps(), found.other()), (found.first.delta_v_mps, kind.label()));
+    }
+    let found = struck(PartnerKind::Pedestrian, None);
+    assert_eq!((found.harm_mps(), found.other()), (found.second.delta_v_mps, "partner"));
+}
+
+#[test]
+fn a_gap_is_that_to_the_nearest_part() {
+    let network = straight();
+    let way = path(&network, Approach::Same, Turn::Straight, 1);
+    // Its trailer ends 6 m behind the one ahead.
+    let mut rollout = rollout(drive(&way, 5.0, 20, |_| 10.0), vec![drive(&way, 45.0, 20, |_| 10.0)]);
+    rollout.actors.push(actor("cp.trailer", Role::Part, drive(&way, 39.0, 20, |_| 10.0)));
+    rollout.actors[2].part_of = Some(1);
+    let metrics = measure(&network, &way, 10.0, &rollout);
+    close(metrics.min_gap.unwrap().value, 34.0 - LENGTH_M, 1e-9);
+    close(metrics.partners[0].min_gap.value, 34.0 - LENGTH_M, 1e-9);
+    close(metrics.partners[0].min_centre_distance.value, 40.0, 1e-9);
+    close(series(&rollout).partners[0].gap_m[5], 34.0 - LENGTH_M, 1e-9);
+    // Something that the ego carries in front of it.
+    rollout.actors.push(actor("ego.plough", Role::Part, drive(&way, 7.0, 20, |_| 10.0)));
+    rollout.actors[3].part_of = Some(0);
+    let metrics = measure(&network, &way, 10.0, &rollout);
+    close(metrics.min_gap.unwrap().value, 32.0 - LENGTH_M, 1e-9);
+}
+
+#[test]
 fn scripted_partners_count_before_background_traffic() {
     let network = straight();
     let way = path(&network, Approach::Same, Turn::Straight, 1);

@@ -21,6 +21,9 @@ pub struct RunSummary {
     /// Change of velocity of the ego and of the other in that contact; where there is none, in that with an obstacle. [m/s]
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub delta_v_mps: Option<[f64; 2]>,
+    /// Nobody sits in or on that other one: it is an animal, or a thing.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub nobody: bool,
     /// Probability that it injures somebody seriously, where a published curve covers it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub serious_injury: Option<f64>,
@@ -59,6 +62,7 @@ impl RunSummary {
                 .severity
                 .as_ref()
                 .map(|severity| [severity.first.delta_v_mps, severity.second.delta_v_mps]),
+            nobody: run.severity.as_ref().is_some_and(|severity| severity.nobody.is_some()),
             serious_injury: run.severity.as_ref().and_then(Severity::serious_injury),
             cause: run.cause,
             preventability: run.preventability.as_ref().map(Preventability::bracket),
@@ -81,12 +85,12 @@ impl RunSummary {
         self.findings.iter().any(|label| label == FindingKind::BrakingBeyondTyres.label())
     }
 
-    /// What findings are ranked by: the greater change of velocity of the two, of a contact with an obstacle the ego's; 0 without any.
-    /// [m/s]
+    /// What findings are ranked by: the greater change of velocity of the two, of a contact with an obstacle, an animal or a
+    /// thing the ego's; 0 without any. [m/s]
     pub fn harm_mps(&self) -> f64 {
         match (self.delta_v_mps, &self.contact) {
-            (Some([ego, other]), Some(_)) => ego.max(other),
-            (Some([ego, _]), None) => ego,
+            (Some([ego, other]), Some(_)) if !self.nobody => ego.max(other),
+            (Some([ego, _]), _) => ego,
             (None, _) => 0.0,
         }
     }

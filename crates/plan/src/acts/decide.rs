@@ -166,9 +166,10 @@ impl Programme {
             Mode::Cruise => {}
             Mode::Stop { rate_mps2, at_m: None } => (acceleration, bound) = (-rate_mps2, 0.0),
             Mode::Stop { rate_mps2, at_m: Some(at_m) } => {
-                if at_m - now.s_m <= THERE_M && v == 0.0 {
+                let left_m = self.left_m(now, at_m);
+                if left_m <= THERE_M && v == 0.0 {
                     (acceleration, bound) = (0.0, 0.0);
-                } else if let Some(braking) = brake_to(v, at_m - now.s_m, rate_mps2, f64::INFINITY) {
+                } else if let Some(braking) = brake_to(v, left_m, rate_mps2, f64::INFINITY) {
                     (acceleration, bound) = (-braking, 0.0);
                 }
             }
@@ -181,7 +182,7 @@ impl Programme {
             }
         }
         let mut stop_at = |at_m: f64, rate_mps2: f64, hardest_mps2: f64| {
-            let left_m = at_m - now.s_m;
+            let left_m = self.left_m(now, at_m);
             if v == 0.0 && left_m <= THERE_M {
                 (acceleration, bound) = (0.0, 0.0);
             } else if let Some(braking) = brake_to(v, left_m, rate_mps2, hardest_mps2)

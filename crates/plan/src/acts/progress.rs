@@ -15,7 +15,7 @@ pub(super) const MEMORY: usize = 25;
 pub struct Progress {
     /// Along the course. [m]
     pub s_m: f64,
-    /// Along the course; never negative. [m/s]
+    /// On its own line, which is longer or shorter than the course where it is beside a bend; never negative. [m/s]
     pub speed_mps: f64,
     /// What it does along its course.
     pub mode: Mode,
@@ -156,37 +156,50 @@ impl Programme {
         }
     }
 
-    /// Goes on along the course for a time with the acceleration that was chosen; exact for any step. [s]
+    /// Goes on along the course for a time with the acceleration that was chosen; exact for any step, but while it moves
+    /// sideways in a bend. [s]
     pub fn advance(&self, now: &mut Progress, time_s: f64) {
         let (v, a, bound) = (now.speed_mps, now.acceleration_mps2, now.bound_mps);
-        if v == bound || a == 0.0 {
-            now.s_m += v * time_s;
-        } else {
+        let mut driven_m = v * time_s;
+        if v != bound && a != 0.0 {
             let until_s = (bound - v) / a;
             // A hair late is rounding.
             if until_s <= time_s + 1e-9 {
-                now.s_m += 0.5 * (v + bound) * until_s + bound * (time_s - until_s).max(0.0);
+                driven_m = 0.5 * (v + bound) * until_s + bound * (time_s - until_s).max(0.0);
                 now.speed_mps = bound;
             } else {
-                now.s_m += (v + 0.5 * a * time_s) * time_s;
+                driven_m = (v + 0.5 * a * time_s) * time_s;
                 now.speed_mps = v + a * time_s;
             }
         }
+        let t_m = now.shift.beside(now.s_m).t_m;
+        now.s_m = self.course.after(usize::from(now.piece), now.s_m, self.reverses(now), t_m, driven_m);
         // Where it changes gear the line goes on the other way; until then it is on this gear's, also a hair behind its end.
         let on_m = self.end_of_gear_m(now).map_or(now.s_m, |end_m| now.s_m.min(end_m));
         now.piece = self.course.piece_at(on_m, usize::from(now.piece)) as u16;
     }
 
+    /// How far it has yet to drive to a place along its course, beside the line as it is now. [m]
+    pub(super) fn left_m(&self, now: &Progress, at_m: f64) -> f64 {
+        let t_m = now.shift.beside(now.s_m).t_m;
+        self.course.driven(usize::from(now.piece), (now.s_m, at_m), self.reverses(now), t_m)
+    }
+
+    fn reverses(&self, now: &Progress) -> bool {
+        self.course.legs[usize::from(now.leg)].reverse
+    }
+
     /// Pose and velocity of its centre, and its yaw rate. [m/s, rad/s]
     pub fn motion(&self, now: &Progress) -> (Pose, Vec2, f64) {
-        let reverse = self.course.legs[usize::from(now.leg)].reverse;
+        let (reverse, piece) = (self.reverses(now), usize::from(now.piece));
         let beside = now.shift.beside(now.s_m);
-        self.course.motion(usize::from(now.piece), now.s_m, reverse, beside, now.speed_mps)
+        let along_mps = now.speed_mps / self.course.stretch(piece, now.s_m, reverse, beside.t_m);
+        self.course.motion(piece, now.s_m, reverse, beside, along_mps)
     }
 
     /// Speed along its heading; negative in reverse gear. [m/s]
     pub fn signed_speed(&self, now: &Progress) -> f64 {
-        if self.course.legs[usize::from(now.leg)].reverse { -now.speed_mps } else { now.speed_mps }
+        if self.reverses(now) { -now.speed_mps } else { now.speed_mps }
     }
 }
 

@@ -211,7 +211,7 @@ pub(crate) fn ego_plan(told: &Told, ground: &Ground, sv_s_m: f64, sv: Pose) -> A
     } else {
         vec![Leg::Lanes { roads: ground.route.clone(), until_m: None, lane: None, against: false, reverse: false }]
     };
-    let start = start(ground, sv_s_m - pace.driven_m, from_m);
+    let start = start(ground, ground.before(&told.sv, sv_s_m, from_m, pace.driven_m), from_m);
     ActorPlan { speed_mps: pace.speed_mps, course, acts: pace.acts, ..ActorPlan::standing(start) }
 }
 

@@ -4,7 +4,7 @@ use crate::ground::pieces::{APPROACH_M, corner_m};
 use crate::told::aside::Aside;
 use crate::told::astride::INSIDE_M;
 use crate::told::crash::Told;
-use crate::told::side::Turning;
+use crate::told::side::{Side, Turning, size_of};
 use crate::usual::LANE_M;
 use recrash_model::account::{LaneLine, LaneWord, LeftRight, Origin};
 use recrash_model::geometry::{Pose, Vec2};
@@ -100,6 +100,13 @@ impl Ground {
     /// A pose along the ego's way, or beside it.
     pub(crate) fn pose(&self, s_m: f64, t_m: f64) -> Pose {
         self.way.pose(s_m, t_m + self.off_route_m)
+    }
+
+    /// Where a road user begins that drives so far to a place along the ego's way, beside the ego's line: its rear axle is on a
+    /// line of its own, which is longer or shorter than the way where that bends. [m]
+    pub(crate) fn before(&self, side: &Side, s_m: f64, t_m: f64, driven_m: f64) -> f64 {
+        let arm_m = recrash_roads::arm_m(side.kind, size_of(side).0);
+        self.way.before(s_m - arm_m, t_m + self.off_route_m, driven_m) + arm_m
     }
 
     /// Along the road where the ego's line is 0, of a street. [m]

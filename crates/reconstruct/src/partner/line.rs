@@ -43,7 +43,7 @@ pub(super) const LEAST_BEFORE_M: f64 = 1.0;
 
 /// The same to where it touches, or begins its last bend.
 pub(super) fn line_to(told: &Told, staging: &Staging, pace: Pace, at: impl Fn(Pose) -> Place) -> (ActorPlan, Pose) {
-    if let Some(begin) = follows_from(staging, &pace) {
+    if let Some(begin) = follows_from(told, staging, &pace) {
         let roads = staging.ground.route.clone();
         let course = vec![Leg::Lanes { roads, until_m: None, lane: None, against: false, reverse: false }];
         return (plan(pace, course, at(begin)), begin);
@@ -88,9 +88,9 @@ fn plan(pace: Pace, course: Vec<Leg>, begin: Place) -> ActorPlan {
 }
 
 /// Where a partner begins that follows the ego's way, where that is on its first road.
-fn follows_from(staging: &Staging, pace: &Pace) -> Option<Pose> {
+fn follows_from(told: &Told, staging: &Staging, pace: &Pace) -> Option<Pose> {
     let (at_m, beside_m) = staging.cp_follows_m?;
-    let begin_m = at_m - pace.driven_m;
+    let begin_m = staging.ground.before(&told.cp, at_m, beside_m, pace.driven_m);
     (0.0..staging.ground.first_m()).contains(&begin_m).then(|| staging.ground.pose(begin_m, beside_m))
 }
 

@@ -11,7 +11,9 @@ use crate::told::others::Extra;
 use crate::touch::staging::Staging;
 use crate::touch::stagings::{MOST_TRIES, Stagings};
 use recrash_model::account::{Account, Untold};
+use recrash_model::geometry::OrientedBox;
 use recrash_model::metrics::{Check, CheckKind, CheckResult, Verdict};
+use recrash_model::rollout::{ActorTrack, Role, Rollout};
 use recrash_roads::check_on;
 use recrash_sim::Ego;
 use std::rc::Rc;
@@ -100,6 +102,10 @@ impl Search {
         self.runs += 1;
         let scenario = checked.value;
         let rollout = recrash_sim::rehearse(&scenario, Ego::Recorded);
+        if !starts_apart(&rollout) {
+            self.refused += 1;
+            return false;
+        }
         let verdict = Verdict { checks: held::facts(told, &scenario, &rollout) };
         // What misses more than the best is looked at no closer.
         if self.best.as_ref().is_some_and(|best| verdict.failures().count() > best.cost.0) {
@@ -138,6 +144,18 @@ impl Search {
         self.runs >= most && self.best.as_ref().is_some_and(Best::shows_all)
     }
 }
+
+/// Whether nobody is in touch with anybody from the beginning: a scenario leaves them 2 cm of room for rounding, and who parts within the
+/// first step has had no contact to be recorded.
+fn starts_apart(rollout: &Rollout) -> bool {
+    let there = |track: &&ActorTrack| track.role != Role::Part && track.is_present(0) && !track.states.is_empty();
+    let boxes: Vec<OrientedBox> = rollout.actors.iter().filter(there).map(|track| track.outline(0)).collect();
+    let touches = |(at, own): (usize, &OrientedBox)| boxes[..at].iter().any(|other| own.depth(other) > ROUNDING_M);
+    !boxes.iter().enumerate().any(touches)
+}
+
+/// Less of one in the other is rounding. [m]
+const ROUNDING_M: f64 = 1e-6;
 
 /// Whether one of the two is told over a line of the road, and is not.
 fn is_place_left_open(check: &Check) -> bool {
@@ -193,7 +211,7 @@ impl Best {
         let (draft, rollout, assumed) = placed::with_near(&told, &ground, (made.draft.clone(), made.rollout.clone()));
         let Ok(checked) = check_on(draft, Some(&ground.network)) else { return made };
         let verdict = Verdict { checks: held::facts(&told, &checked.value, &rollout) };
-        if verdict.failures().count() > 0 {
+        if verdict.failures().count() > 0 || !starts_apart(&rollout) {
             return made;
         }
         let assumed = made.assumed.iter().cloned().chain(assumed).collect();

@@ -1,10 +1,14 @@
 //! How the ego comes to the contact: within its lane, from the speed that a column has, at red, and where it stops.
 
+use crate::common::record;
 use crate::ways::{before_contact, checks_without, made, story};
 use recrash_model::account::{Account, Act, Fact, Source, Speed, SpeedMeaning};
+use recrash_model::kinds::PartnerKind;
 use recrash_model::metrics::{CheckKind, CheckResult};
+use recrash_model::record::{Coded, CrashRecord};
 use recrash_model::scenario::{Aspect, Device};
-use recrash_model::template::Movement;
+use recrash_model::template::{Movement, RoadType};
+use recrash_model::zones::ContactZone;
 use recrash_reconstruct::Reconstruction;
 
 const WITHIN: &str = "The AV was traveling west in the center lane on Elm Street. A sedan in the right lane began to change lanes to the left. The AV slowed \
@@ -94,4 +98,24 @@ fn who_stands_at_the_edge_of_its_lane_is_beside_its_middle() {
     let middle = |words: &str| ego_y(&made(&story(words)), 0);
     let by_m = middle(&EDGE.replace(" at the right edge of the lane", "")) - middle(EDGE);
     assert!((by_m - 0.6).abs() < 0.05, "{by_m}");
+}
+
+#[test]
+fn who_comes_up_behind_an_ego_is_not_in_touch_with_it_from_the_beginning() {
+    let text = "The AV was making a right turn at an intersection with a traffic light from westbound Elm Street onto Oak Street. The AV advanced and \
+                then came to a stop to yield to cross traffic. Just when the AV began to move again, it was rear ended by a passenger car behind it.";
+    let turns = Coded::Known(Movement::RightTurn);
+    let record = CrashRecord {
+        road: Coded::Known(RoadType::Intersection),
+        partner: Coded::Known(PartnerKind::PassengerCar),
+        sv_movement: turns.clone(),
+        cp_movement: turns,
+        posted_speed_mps: Some(20.1168),
+        sv_speed_mps: Some(0.44704),
+        sv_zones: vec![ContactZone::RearLeft, ContactZone::Rear],
+        cp_zones: vec![ContactZone::Front, ContactZone::FrontRight],
+        ..record("1-1", 1, text)
+    };
+    // Of every reconstruction of a story it is asked that nobody begins in touch with anybody.
+    made(&recrash_reader::account(&recrash_reader::incidents(&[record])[0]).expect("a story"));
 }

@@ -4,7 +4,7 @@ use crate::common::account_of;
 use recrash_model::account::{Account, Act, Fact, LeftRight, Origin};
 use recrash_model::math;
 use recrash_model::metrics::{Check, CheckKind, CheckResult};
-use recrash_model::rollout::{ActorState, Event, EventKind};
+use recrash_model::rollout::{ActorState, Event, EventKind, Role};
 use recrash_model::template::Movement;
 use recrash_reconstruct::{Reconstruction, held_against, reconstruct};
 
@@ -75,7 +75,19 @@ pub fn made(account: &Account) -> Reconstruction {
     let scenario = recrash_roads::check(made.draft.clone()).expect("it ran").value;
     let again = held_against(account, &scenario, &made.rollout).expect("it can be held");
     assert_eq!(again.failures().count(), 0, "{again:?}");
+    assert_nobody_starts_in_touch(&made);
     made
+}
+
+/// A contact that there is from the beginning is in no list of events.
+fn assert_nobody_starts_in_touch(made: &Reconstruction) {
+    let users: Vec<_> = made.rollout.actors.iter().filter(|track| track.role != Role::Part).collect();
+    for (at, one) in users.iter().enumerate().filter(|(_, track)| track.is_present(0)) {
+        for other in users[..at].iter().filter(|track| track.is_present(0)) {
+            let depth_m = one.outline(0).depth(&other.outline(0));
+            assert!(depth_m < 1e-6, "{} begins {depth_m} m in {}", one.id, other.id);
+        }
+    }
 }
 
 /// What of an account is not shown by the staging of the same account without some of its facts.

@@ -396,6 +396,7 @@ fn severity(contact: &Contact) -> Severity {
         first: side(contact.ego_speed_mps),
         second: side(contact.other_speed_mps),
         obstacle: None,
+        nobody: None,
     }
 }
 

@@ -234,7 +234,7 @@ fn numbers(case: &CaseView) -> Markup {
             (pair("Least gap", "m", 2, "nobody else and no thing took part", &|run: &RunView| run.min_gap_m()))
             (pair("Least TTC", "s", 2, "they were never on a course to touch", &|run| worst(run, |p| p.min_ttc.map(|t| t.value), true)))
             (pair("PET", "s", 2, "no place was crossed by both, one after the other", &|run| worst(run, |p| p.pet.map(|t| t.value), true)))
-            (pair("Hardest braking of the ego", "m/s\u{b2}", 1, "", &|run| Some(run.metrics.ego.max_deceleration.value)))
+            (pair("Hardest braking of the ego, by its brake", "m/s\u{b2}", 1, "", &|run| Some(run.metrics.ego.max_deceleration.value)))
             .tile {
                 dt { "Contact" }
                 dd.value.words {

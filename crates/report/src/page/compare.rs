@@ -94,7 +94,7 @@ fn ego_lines(runs: &[(&str, &RunView)]) -> Markup {
             },
             None => parts::missing("no contact"),
         }))
-        (line("Ego: hardest braking", runs, |run| parts::timed(Some(run.metrics.ego.max_deceleration), 1, "m/s\u{b2}", "")))
+        (line("Ego: hardest braking, by its brake", runs, |run| parts::timed(Some(run.metrics.ego.max_deceleration), 1, "m/s\u{b2}", "")))
         (line("Ego: braking with nothing in the way", runs, |run| parts::timed(run.metrics.ego.phantom_braking, 1, "m/s\u{b2}", "it never did")))
         (line("Ego: reversals in the window", runs, |run| html! { (run.metrics.ego.max_reversals) }))
         (line("Ego: farthest beyond its lane", runs, |run| parts::timed(Some(run.metrics.ego.max_lane_departure), 2, "m", "")))

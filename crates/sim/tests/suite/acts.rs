@@ -397,6 +397,34 @@ fn a_driveway_is_no_place_off_the_road() {
 }
 
 #[test]
+fn who_drives_beside_a_bend_keeps_its_speed_over_ground() {
+    // 3 m to the right of its course, and to the left of it: 23 m and 17 m from the middle of a bend of 20 m.
+    for to_t_m in [3.0, -3.0] {
+        let mut draft = scene();
+        let turn = Leg::Curve { to: Place::at(80.0, 10.0, 90.0), reverse: false };
+        let on = Leg::Curve { to: Place::at(80.0, 60.0, 90.0), reverse: false };
+        let stop = when(Trigger::AtM(40.0), Deed::Stop { rate_mps2: 2.0, at_m: Some(60.0) });
+        let acts = vec![when(Trigger::TimeS(0.0), Deed::Shift { to_t_m, over_m: 20.0 }), stop];
+        draft.actors.push(actor("cp", 20.0, -10.0, 8.0, vec![straight_on(60.0, -10.0), turn, on], acts));
+        let rollout = recorded(draft);
+        let states = &track(&rollout, "cp").states;
+        let stood = states.iter().position(|state| state.speed() == 0.0).expect("it stops in the bend");
+        // Until it brakes it has come 41 m in the first place; its centre swings 1.4 m ahead of an axle that turns.
+        for state in &states[26..50] {
+            assert!((state.velocity().length() - 8.0).abs() < 0.04, "{to_t_m}: {state:?}");
+        }
+        let driven_m: f64 = states.windows(2).map(|pair| pair[0].position().distance(pair[1].position())).sum();
+        assert!(stood > 50 && driven_m > 55.0, "{stood} {driven_m}");
+        for pair in states[26..=stood].windows(2) {
+            assert!((pair[1].speed() - pair[0].speed()).abs() < 0.25, "{to_t_m}: {pair:?}");
+        }
+        let middle = Vec2::new(60.0, 10.0);
+        let rear = states[stood].position() - Vec2::from_heading(states[stood].heading) * 1.4;
+        assert!((rear.distance(middle) - (20.0 + to_t_m)).abs() < 0.3, "{rear:?}");
+    }
+}
+
+#[test]
 fn a_trailer_cuts_the_corner() {
     let mut draft = scene();
     let turn = Leg::Curve { to: Place::at(40.0, 20.0, 90.0), reverse: false };
