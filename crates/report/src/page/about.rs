@@ -117,7 +117,7 @@ fn remarks(diagnostics: &[Diagnostic]) -> Markup {
 }
 
 /// Words of a suite that goes by accounts.
-const OF_ACCOUNTS: [(&str, &str); 11] = [
+const OF_ACCOUNTS: [(&str, &str); 12] = [
     (
         "Told, not told",
         "An incident is told where a reconstruction shows every checked fact of its narratives; else it is not told, and why is counted. A single fact is not told where no narrative states it.",
@@ -131,6 +131,10 @@ const OF_ACCOUNTS: [(&str, &str); 11] = [
         "Whose move brought the conflict about, and who had to answer it. Said of the subject vehicle.",
     ),
     ("As told", "The run of the recorded driver, in the crash as reconstructed: it is held against the record."),
+    (
+        "As told, tuned",
+        "The recorded driver in the scenario that tuning kept, where that is another one: the same record with other values for what it leaves open, and not the crash as reconstructed.",
+    ),
     (
         "Tested, as reconstructed",
         "The run of the system under test in the same crash: it takes over from the recorded driver at the handover.",
