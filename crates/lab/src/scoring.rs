@@ -1,9 +1,10 @@
 //! What a point of a search scores, and which points are refused. Described in `docs/models/tuning.md`.
 
 use crate::judging::run_scenario;
+use recrash_metrics::came_nearer;
 use recrash_model::geometry::{OrientedBox, Pose};
 use recrash_model::math::wrap_angle;
-use recrash_model::metrics::Expectation;
+use recrash_model::metrics::{Expectation, PartnerMetrics, Timed};
 use recrash_model::profile::SystemProfile;
 use recrash_model::rollout::{ActorState, Role, Rollout, STEP_S};
 use recrash_model::run::JudgedRun;
@@ -32,6 +33,8 @@ const DEPTH_TIME_S: f64 = 0.3;
 const DEPTH_LOOKS: u8 = 15;
 /// After this many failures of a program that hangs or ends, the search of a scenario asks no more of it.
 const MAX_FAULTS: usize = 3;
+/// What counts as the gap where nobody came nearer to the ego: farther than any. [m]
+const NOBODY_NEARER_M: f64 = 1e3;
 /// Worth of each kind of odd behaviour. [m]
 const ODD_BEHAVIOUR_WORTH_M: f64 = 0.1;
 
@@ -127,9 +130,10 @@ impl<'a> Scoring<'a> {
         kinds.dedup();
         let odd = kinds.iter().filter(|kind| !kind.is_failure()).count();
         let depth_m = contact_depth(&run.rollout);
+        let min_gap = approached_gap(&scenario, &run);
         let gap = match depth_m {
             Some(depth_m) => -depth_m.min(MARGIN_M),
-            None => run.metrics.min_gap.map_or(1e3, |gap| gap.value.max(MARGIN_M)),
+            None => min_gap.map_or(NOBODY_NEARER_M, |gap| gap.value.max(MARGIN_M)),
         };
         let harm = match self.aim {
             Aim::Failure => 0.0,
@@ -139,7 +143,7 @@ impl<'a> Scoring<'a> {
             objective: gap + DISTANCE_PRICE_M * self.distance(values)
                 - ODD_BEHAVIOUR_WORTH_M * odd as f64
                 - HARM_WORTH * harm,
-            min_gap: run.metrics.min_gap,
+            min_gap,
             depth_m,
             contact_mps: run.metrics.contact.as_ref().map(|contact| (contact.ego_speed_mps, contact.other_speed_mps)),
             braking: Some(run.metrics.ego.max_deceleration).filter(|braking| braking.value > 0.0),
@@ -192,6 +196,17 @@ pub fn is_sound(score: &Score) -> bool {
 /// Whether a run ends in a contact of the ego that no small difference would undo.
 pub fn is_sound_contact(rollout: &Rollout) -> bool {
     contact_depth(rollout).is_some_and(|depth_m| depth_m >= MARGIN_M)
+}
+
+/// The least box gap to a scripted partner (background traffic where there is none) that came nearer after the handover. What
+/// the scene begins with does not count: a search would move who stands beside the ego, and find nothing about it.
+fn approached_gap(scenario: &Scenario, run: &JudgedRun) -> Option<Timed> {
+    let handover_s = scenario.draft().ego.handover_s.unwrap_or(0.0);
+    let role = |partner: &PartnerMetrics| run.rollout.actors.get(partner.actor).map(|track| track.role);
+    let partners = &run.metrics.partners;
+    let counted = if partners.iter().any(|of| role(of) == Some(Role::Partner)) { Role::Partner } else { Role::Traffic };
+    let nearer = |of: &&PartnerMetrics| role(of) == Some(counted) && came_nearer(&run.rollout, handover_s, of);
+    partners.iter().filter(nearer).map(|of| of.min_gap).min_by(|a, b| a.value.total_cmp(&b.value))
 }
 
 /// How deep into one another the ego and what it touched would go, if both went on for a moment as they came, at the same

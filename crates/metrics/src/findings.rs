@@ -1,7 +1,7 @@
 //! Findings: what a rollout shows about the ego, one sentence each.
 
 use crate::scene::{STANDSTILL_MPS, first_step, gap_at, time_of, with_parts};
-use recrash_model::metrics::{EgoMetrics, Finding, FindingKind, Metrics, Timed};
+use recrash_model::metrics::{EgoMetrics, Finding, FindingKind, Metrics, PartnerMetrics, Timed};
 use recrash_model::profile::FailureCriteria;
 use recrash_model::rollout::{EventKind, Role, Rollout, TerminationKind};
 
@@ -81,8 +81,7 @@ fn near_misses<'a>(
         .filter(move |partner| Some(partner.actor) != touched)
         .filter(|partner| rollout.actors.get(partner.actor).is_some_and(|track| track.role == Role::Partner))
         .filter(|partner| partner.min_gap.value < criteria.min_gap_m)
-        // Who is put so near to the ego and comes no nearer has not met it.
-        .filter(move |partner| first_gap_m(rollout, first, partner.actor) - partner.min_gap.value > APPROACH_M)
+        .filter(move |partner| has_approached(rollout, first, partner))
         .map(|partner| {
             let Timed { value, time_s } = partner.min_gap;
             Finding {
@@ -96,6 +95,16 @@ fn near_misses<'a>(
                 ),
             }
         })
+}
+
+/// Whether a partner and the ego came nearer to each other than they stood at the handover, or at the start where there
+/// is none. The least gap to all others says how the scene begins, and nothing about the ego.
+pub fn came_nearer(rollout: &Rollout, handover_s: f64, partner: &PartnerMetrics) -> bool {
+    has_approached(rollout, first_step(rollout, handover_s), partner)
+}
+
+fn has_approached(rollout: &Rollout, first: usize, partner: &PartnerMetrics) -> bool {
+    first_gap_m(rollout, first, partner.actor) - partner.min_gap.value > APPROACH_M
 }
 
 /// Box gap between the ego and another at the first step that counts, parts of both included. [m]

@@ -24,7 +24,7 @@ pub mod severity;
 pub mod swept;
 
 pub use faithfulness::{faithfulness, faithfulness_on};
-pub use findings::findings;
+pub use findings::{came_nearer, findings};
 pub use measure::{measure, measure_on, series};
 pub use scene::EgoWay;
 pub use severity::severity_of;

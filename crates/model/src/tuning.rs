@@ -56,7 +56,7 @@ impl Aim {
 pub struct Score {
     /// What the search makes small: the least box gap plus penalties, see `docs/models/tuning.md`. [m]
     pub objective: f64,
-    /// Least box gap to a scripted partner. [m]
+    /// Least box gap to a scripted partner that came nearer than it stood at the handover, or at the start. [m]
     pub min_gap: Option<Timed>,
     /// How deep the ego and what it touched would go into one another, where they touch. [m]
     #[serde(default, skip_serializing_if = "Option::is_none")]

@@ -85,7 +85,7 @@ function readCase(name) {
       areas: raw.areas.map(([shape, points]) => ({ shape, points: polyline(points) })),
       lines: raw.lines.map(([kind, points]) => ({ kind, points: polyline(points) })),
     };
-    cases.set(name, { id: raw.id, drawing, before: readRun(raw.before), untuned: readRun(raw.untuned), after: readRun(raw.after), reference: readRun(raw.reference), tune: raw.tune });
+    cases.set(name, { id: raw.id, drawing, before: readRun(raw.before), untuned: readRun(raw.untuned), toldTuned: readRun(raw.toldTuned), after: readRun(raw.after), reference: readRun(raw.reference), tune: raw.tune });
   }
   return cases.get(name);
 }

@@ -33,10 +33,10 @@ function pathOf(values, x, y) {
 function linesOf(name, kase) {
   const lines = [];
   const single = !(kase.before && kase.after);
-  for (const which of ['before', 'untuned', 'after']) {
+  for (const which of ['before', 'untuned', 'toldTuned', 'after']) {
     const run = kase[which];
     if (!run) continue;
-    const look = which === 'before' && !single ? 'before' : '';
+    const look = ['before', 'toldTuned'].includes(which) && !single ? 'before' : '';
     const of = run.partner && run.actors[run.partner.actor];
     const who = (actor) => (actor === 0 ? 'ego' : 'partner');
     if (name === 'gap') if (of) lines.push({ which, look, run, who: 'gap', id: of.id, values: run.partner.values.map((value, i) => (isThere(of, i * run.step) ? value : NaN)) });
@@ -139,9 +139,9 @@ class Plot {
     this.time = time;
     this.shown = shown;
     const told = [];
-    // The run before tuning takes the place of the last one where it is looked at.
-    const hidden = shown === 'untuned' ? 'after' : 'untuned';
-    all('[data-which]', this.svg).forEach((mark) => mark.setAttribute('visibility', mark.dataset.which === hidden ? 'hidden' : 'visible'));
+    // The system's run before tuning takes the place of its last one where it is looked at, and so does the recorded driver's after it.
+    const drawn = [shown === 'toldTuned' ? shown : 'before', shown === 'untuned' ? shown : 'after'];
+    all('[data-which]', this.svg).forEach((mark) => mark.setAttribute('visibility', drawn.includes(mark.dataset.which) ? 'visible' : 'hidden'));
     this.lines.forEach((line, i) => {
       const value = valueAt(line.values, line.run, time);
       const inside = this.name !== 'gap' || value <= GAP_SHOWN_M;

@@ -1,6 +1,6 @@
 // The replay of one scenario: time, which run, camera, and the controls that move them.
 
-const MODES = ['before', 'untuned', 'after', 'both', 'reference'];
+const MODES = ['before', 'untuned', 'toldTuned', 'after', 'both', 'reference'];
 /** How long before the encounter a replay opens. [s] */
 const LEAD_S = 1.5;
 /** Kinds of events, the gravest first: what a mark for several of them looks like. */

@@ -1,7 +1,7 @@
 // The search over a scenario's numbers: objective by point, with the best so far and the point that was kept.
 
-/** Objectives above this are of points that could not be run: they stand at the upper edge, and stretch no axis. [m] */
-const SCORED_M = 1e6;
+/** Objectives above this are of points that could not be run, or in which nobody came nearer: they stand at the upper edge, and stretch no axis. [m] */
+const SCORED_M = 900;
 
 function drawTuning(section) {
   const plot = one('.tune-plot', section);
@@ -23,12 +23,14 @@ function drawTuning(section) {
   for (const value of ticks(0, points.length - 1, 8).filter(Number.isInteger)) {
     parts.push(svg('text', { class: 'plot-text', x: x(value), y: height - 5, 'text-anchor': 'middle' }, value));
   }
-  let best = Infinity;
+  // A failure is better than all that pass, as in the search.
+  let best = null;
   let path = '';
-  for (const { number, objective, refused } of points) {
-    if (objective !== null && !refused.length && objective < best) {
+  for (const { number, objective, failed, refused } of points) {
+    const better = !best || failed > best.failed || (failed === best.failed && objective < best.objective);
+    if (objective !== null && !refused.length && better) {
       path += path ? `H${x(number)}V${y(objective)}` : `M${x(number)} ${y(objective)}`;
-      best = objective;
+      best = { objective, failed };
     }
   }
   if (path) parts.push(svg('path', { class: 'tune-best', d: `${path}H${x(points.length - 1)}` }));

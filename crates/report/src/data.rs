@@ -166,6 +166,9 @@ pub fn case(case: &CaseView) -> Value {
     if let Some(untuned) = &case.untuned {
         data["untuned"] = run(untuned);
     }
+    if let Some(told_tuned) = &case.told_tuned {
+        data["toldTuned"] = run(told_tuned);
+    }
     if let (Some(RunTrace { run, series }), Some(last)) = (&case.reference, case.last_run()) {
         data["reference"] = staging::on(trace(run, series), &last.scenario, &case.drawing, run);
     }

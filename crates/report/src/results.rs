@@ -1,7 +1,7 @@
 //! The results as a table for spreadsheets and data frames.
 
 use crate::summary::struck_standing;
-use crate::view::{CaseRow, RunRow, SuiteView};
+use crate::view::{CaseRow, RunNames, RunRow, SuiteView};
 use crate::words::{self, fixed};
 use recrash_model::metrics::{Check, PartnerMetrics, Timed};
 use recrash_model::preventability::Preventability;
@@ -93,7 +93,7 @@ pub fn render(suite: &SuiteView) -> String {
 
 /// The row of a run, or of a scenario that was not run.
 fn row(suite: &SuiteView, case: &CaseRow, name: &str, run: Option<&RunRow>) -> Vec<String> {
-    let is_recorded = run.is_some() && case.account.is_some() && name == case.names().before;
+    let is_recorded = run.is_some() && RunNames::is_recorded(name);
     let mut row = scenario_cells(suite, case, name);
     row.push(suite.profile.name.clone());
     row.push(if is_recorded { "recorded".to_owned() } else { suite.ego.clone() });

@@ -91,17 +91,25 @@ pub struct RunNames {
     pub before: &'static str,
     /// The one before tuning, where tuning kept another scenario than the reconstruction.
     pub untuned: &'static str,
+    /// The recorded driver's in the scenario that tuning kept.
+    pub told_tuned: &'static str,
     /// The last.
     pub after: &'static str,
 }
 
 impl RunNames {
     /// Of a suite that goes by templates: the same ego in the scenario as designed, and as tuned.
-    pub const DESIGNED: Self = Self { before: "as designed", untuned: "as designed", after: "tuned" };
+    pub const DESIGNED: Self = Self { before: "as designed", untuned: "as designed", told_tuned: "", after: "tuned" };
     /// Of a suite that goes by accounts: the recorded driver, and the system under test in the crash as reconstructed.
-    pub const RETOLD: Self = Self { before: "as told", untuned: "tested", after: "tested" };
+    pub const RETOLD: Self =
+        Self { before: "as told", untuned: "tested", told_tuned: "as told, tuned", after: "tested" };
     /// The same where tuning kept another scenario: the system under test in both.
     pub const RETOLD_TUNED: Self = Self { after: "tuned", ..Self::RETOLD };
+
+    /// Whether a run of this name is the recorded driver's: nobody is under test in it, and it is held against the record.
+    pub fn is_recorded(name: &str) -> bool {
+        [Self::RETOLD.before, Self::RETOLD.told_tuned].contains(&name)
+    }
 
     fn of(account: bool, untuned: bool) -> Self {
         match (account, untuned) {
@@ -132,13 +140,16 @@ pub struct CaseRow {
     /// What the account says, in a suite that goes by accounts.
     #[serde(default)]
     pub account: Option<AccountRow>,
-    /// The scenario as designed; in a suite that goes by accounts, the recorded driver's run. `None` only where it was refused
+    /// The scenario as designed; in a suite that goes by accounts, the recorded driver's run in the crash as reconstructed. `None` only where it was refused
     /// before it could run.
     pub before: Option<RunRow>,
     /// In a suite that goes by accounts, the run of the system under test in the crash as reconstructed, where tuning kept
     /// another scenario; else that run is `after`.
     #[serde(default)]
     pub untuned: Option<RunRow>,
+    /// In a suite that goes by accounts, the recorded driver's run in the scenario that tuning kept, where that is another one.
+    #[serde(default)]
+    pub told_tuned: Option<RunRow>,
     /// The scenario as tuned, where tuning kept another point; in a suite that goes by accounts, the last run of the system
     /// under test, where there is something to test.
     pub after: Option<RunRow>,
@@ -195,6 +206,8 @@ pub struct CaseView {
     pub before: Option<RunView>,
     /// As [`CaseRow::untuned`].
     pub untuned: Option<RunView>,
+    /// As [`CaseRow::told_tuned`].
+    pub told_tuned: Option<RunView>,
     /// As [`CaseRow::after`].
     pub after: Option<RunView>,
     /// How the other egos fare in the last run's scenario, where the ego under test fails it.
@@ -295,13 +308,12 @@ impl CaseRow {
 
     /// The runs with their names.
     pub fn runs(&self) -> Vec<(&'static str, &RunRow)> {
-        named(self.names(), [&self.before, &self.untuned, &self.after])
+        named(self.names(), [&self.before, &self.untuned, &self.told_tuned, &self.after])
     }
 
     /// Those of the system under test: without the recorded driver's.
     pub fn system_runs(&self) -> Vec<(&'static str, &RunRow)> {
-        let recorded = RunNames::RETOLD.before;
-        self.runs().into_iter().filter(|(name, _)| *name != recorded).collect()
+        self.runs().into_iter().filter(|(name, _)| !RunNames::is_recorded(name)).collect()
     }
 
     /// Whether the run that tells the record is true to it: the recorded driver's, or the last one where there is none. There
@@ -336,12 +348,12 @@ impl CaseView {
 
     /// The runs with their names.
     pub fn runs(&self) -> Vec<(&'static str, &RunView)> {
-        named(self.names(), [&self.before, &self.untuned, &self.after])
+        named(self.names(), [&self.before, &self.untuned, &self.told_tuned, &self.after])
     }
 }
 
-fn named<T>(names: RunNames, runs: [&Option<T>; 3]) -> Vec<(&'static str, &T)> {
-    let names = [names.before, names.untuned, names.after];
+fn named<T>(names: RunNames, runs: [&Option<T>; 4]) -> Vec<(&'static str, &T)> {
+    let names = [names.before, names.untuned, names.told_tuned, names.after];
     names.into_iter().zip(runs).filter_map(|(name, run)| Some((name, run.as_ref()?))).collect()
 }
 

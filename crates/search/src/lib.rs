@@ -97,8 +97,9 @@ pub struct Task<'a> {
 
 /// Searches for values of `parameters` that make `score(values, next).objective` small, with one of our optimisers.
 ///
-/// Point 0 is the scenario as designed. Refused points are logged and never kept, so the result is at least as good as
-/// the start; where every point is refused, the start is kept. The search ends early at a score that `enough` accepts.
+/// Point 0 is the scenario as designed. Refused points are logged and never kept. Of the others a failure is kept before
+/// any point that passes, and among equals the one with the least objective; where every point is refused, the start is
+/// kept. The search ends early at a score that `enough` accepts.
 pub fn tune(
     scenario_id: &str,
     parameters: &[Parameter],
@@ -184,9 +185,13 @@ fn asked(optimiser: &mut dyn Optimiser, parameters: &[Parameter]) -> (Vec<f64>, 
     (parameters.iter().zip(&unit).map(|(p, &u)| from_unit(p, u)).collect(), proposed_by)
 }
 
+/// Whether a point is kept instead of the best one so far. What is looked for is a failure, so one comes before all that
+/// pass, whatever their objectives: a gap of somebody who never came nearer is smaller than many a near miss.
 fn is_better(point: &TunePoint, earlier: &[TunePoint], best: usize) -> bool {
     let Some(best) = earlier.get(best) else { return true };
-    point.score.refused.is_empty() && (!best.score.refused.is_empty() || point.score.objective < best.score.objective)
+    let (point, best) = (&point.score, &best.score);
+    let order = (!point.failed).cmp(&!best.failed).then(point.objective.total_cmp(&best.objective));
+    point.refused.is_empty() && (!best.refused.is_empty() || order.is_lt())
 }
 
 fn all_to_unit(parameters: &[Parameter], values: &[f64]) -> Vec<f64> {
@@ -281,6 +286,24 @@ mod tests {
         let parameters = [parameter(0.0, 1.0, 0.5)];
         let log = tune("t", &parameters, TuneOptions::default(), Seed(1), |x, _| scored(5.0, x[0] == 0.5), |_| false);
         assert_ne!(log.best, 0);
+    }
+
+    #[test]
+    fn a_failure_is_kept_before_every_point_that_passes() {
+        let parameters = [parameter(0.0, 1.0, 0.5)];
+        // Few points fail, and whatever passes has the smaller objective; of what is refused nothing is kept.
+        let score = |x: &[f64], _: Next<'_>| {
+            let failed = (0.6..0.8).contains(&x[0]);
+            let refused = (0.7..0.75).contains(&x[0]);
+            Score { failed, ..scored(if failed { 1.0 + x[0] } else { x[0] - 5.0 }, refused) }
+        };
+        for searcher in [Searcher::Halton, Searcher::Cma] {
+            let log = tune("t", &parameters, TuneOptions { searcher, budget: 40 }, Seed(3), score, |_| false);
+            let accepted = |point: &&TunePoint| point.score.failed && point.score.refused.is_empty();
+            let failures = log.points.iter().filter(accepted);
+            let nearest = failures.min_by(|a, b| a.score.objective.total_cmp(&b.score.objective)).unwrap();
+            assert_eq!(log.best, nearest.number, "{searcher:?}");
+        }
     }
 
     #[test]

@@ -4,12 +4,12 @@ use recrash_lab::minimal::{minimal, without_each};
 use recrash_lab::parity::random_scenario;
 use recrash_lab::perturb::{Nudge, Who, nudged};
 use recrash_lab::robustness::{Robustness, robustness};
-use recrash_lab::{Scoring, run_scenario, run_scenario_in, triage};
+use recrash_lab::{Scoring, judge, run_scenario, run_scenario_in, triage};
 use recrash_model::Seed;
 use recrash_model::geometry::OrientedBox;
 use recrash_model::metrics::{Finding, FindingKind};
 use recrash_model::profile::SystemProfile;
-use recrash_model::rollout::{ActorState, Substeps};
+use recrash_model::rollout::{ActorState, Role, Substeps};
 use recrash_model::run::JudgedRun;
 use recrash_model::scenario::ScenarioDraft;
 use recrash_model::triage::{FailureClass, Fared};
@@ -192,6 +192,35 @@ fn a_search_for_severity_takes_the_worse_contact_and_one_for_failures_does_not_a
     assert!((objective(Aim::Severity, 3.0) - objective(Aim::Severity, 9.0) - 6.0).abs() < 1e-9);
     // A contact of any harm is nearer to what is looked for than a gap.
     assert!(objective(Aim::Severity, 0.0) < 0.1);
+}
+
+#[test]
+fn a_gap_counts_in_a_search_once_somebody_came_nearer() {
+    let (simulator, profile) = (Native::new(Ego::MetadriveIdm), profile());
+    let run = |scenario: &recrash_roads::Scenario| run_scenario(scenario, &simulator, &profile, None).unwrap();
+    let scored = |scenario: &recrash_roads::Scenario, run: &JudgedRun| {
+        Scoring::of(&[], |_| Ok(scenario.clone()), |_| Ok(run.clone()), run).score(&[])
+    };
+    let alone = |run: &JudgedRun| run.rollout.actors.iter().filter(|track| track.role == Role::Partner).count() == 1;
+    let (scenario, met) = (0..)
+        .map(|number| random_scenario(14, number))
+        .map(|scenario| (run(&scenario), scenario))
+        .find(|(run, _)| alone(run) && run.failures().eq([FindingKind::NearMiss]))
+        .map(|(run, scenario)| (scenario, run))
+        .expect("one that comes too near");
+    assert_eq!(scored(&scenario, &met).min_gap, met.metrics.min_gap);
+    assert!(scored(&scenario, &met).failed && scored(&scenario, &met).objective < 900.0);
+    // The two stand so near from the beginning: nothing is found about the ego, and nearer would be no better.
+    let time_s = met.metrics.min_gap.expect("measured").time_s;
+    let mut rollout = met.rollout.clone();
+    for track in &mut rollout.actors {
+        let there = track.states[(time_s * 10.0).round() as usize];
+        track.states.fill(there);
+    }
+    let stood = judge(&scenario, rollout, &profile, None);
+    assert_eq!(stood.min_gap_m(), met.min_gap_m());
+    let score = scored(&scenario, &stood);
+    assert!(!score.failed && score.min_gap.is_none() && score.objective > 900.0, "{score:?}");
 }
 
 #[test]

@@ -26,8 +26,10 @@ pub(super) struct Case<'a> {
     pub design: Option<DesignLog>,
     /// What the account says, in a suite that goes by accounts.
     pub account: Option<AccountRow>,
-    /// The recorded driver's run, in a suite that goes by accounts.
+    /// The recorded driver's run in the crash as reconstructed, in a suite that goes by accounts.
     pub recorded: Option<Ran>,
+    /// The same driver's in the scenario that tuning kept, where that is another one.
+    pub recorded_tuned: Option<Ran>,
     /// What a model finds that holds the recorded driver's run against the report, where one is cast.
     pub review: Option<Reviewed>,
     /// As designed.
@@ -62,6 +64,13 @@ pub(super) struct Tuned {
     pub agent: AgentLog,
 }
 
+impl Tuned {
+    /// Whether tuning kept another scenario, or a person may have made one of it.
+    pub fn is_another(&self, edited: &[String]) -> bool {
+        self.log.best != 0 || !edited.is_empty()
+    }
+}
+
 impl<'a> Case<'a> {
     /// Reads all that there is of a case.
     pub fn read(suite: &Suite, cases: &Cases, cluster: &'a Cluster) -> Result<Self, PipelineError> {
@@ -75,12 +84,11 @@ impl<'a> Case<'a> {
         let review = optional(suite, &names::review(id), made.whole(Stage::Review) && recorded.is_some())?;
         let first = made.run(Stage::Simulate, names::scenario(id), names::first_run(id))?;
         let tuned = made.tuned()?;
-        // Beside a tuned run belongs how the recorded driver fares in the tuned scenario.
-        let recorded = match &tuned {
-            Some(Tuned { log, .. }) if by_account && (log.best != 0 || !edited.is_empty()) => {
+        let recorded_tuned = match &tuned {
+            Some(tuned) if by_account && tuned.is_another(&edited) => {
                 made.run(Stage::Triage, names::tuned(id), names::tuned_recorded_run(id))?
             }
-            _ => recorded,
+            _ => None,
         };
         let triage = optional(suite, &names::triage(id), tuned.is_some())?;
         let reference = optional(suite, &names::reference_run(id), triage.is_some())?;
@@ -90,6 +98,7 @@ impl<'a> Case<'a> {
             design,
             account: account_row(cases, cluster),
             recorded,
+            recorded_tuned,
             review,
             first,
             tuned,

@@ -72,7 +72,7 @@ const DRIVEN_IN: [Stage; 3] = [Stage::Simulate, Stage::Tune, Stage::Triage];
 pub(super) fn row(suite: &Suite, cases: &Cases, position: usize, case: &Case) -> CaseRow {
     let id = &case.cluster.scenario_id;
     let narrative = case.narrative.as_ref().map(|(narrative, _)| narrative);
-    let [before, untuned, after] = runs(case);
+    let Runs { before, untuned, told_tuned, after } = Runs::of(case);
     let last = after.or(before).map(|(ran, _)| ran);
     let mut row = CaseRow {
         scenario_id: id.clone(),
@@ -85,6 +85,7 @@ pub(super) fn row(suite: &Suite, cases: &Cases, position: usize, case: &Case) ->
         account: case.account.clone(),
         before: before.map(|(ran, file)| run_row(suite, ran, &file(id))),
         untuned: untuned.map(|(ran, file)| run_row(suite, ran, &file(id))),
+        told_tuned: told_tuned.map(|(ran, file)| run_row(suite, ran, &file(id))),
         after: after.map(|(ran, file)| run_row(suite, ran, &file(id))),
         triage: case.triage.clone(),
         review: case.review.as_ref().and_then(Reviewed::by),
@@ -101,19 +102,37 @@ pub(super) fn row(suite: &Suite, cases: &Cases, position: usize, case: &Case) ->
 /// A run, and the scenario file it is of.
 type RunOf<'a> = (&'a Ran, fn(&str) -> String);
 
-/// The runs of a case that the page shows: as designed and as tuned; or, in a suite that goes by accounts, the recorded
-/// driver's, that of the system under test before tuning where tuning kept another scenario, and its last one.
-fn runs<'a>(case: &'a Case) -> [Option<RunOf<'a>>; 3] {
-    let first = case.first.as_ref().map(|ran| (ran, names::scenario as fn(&str) -> String));
-    let moved = case.tuned.as_ref().filter(|tuned| tuned.log.best != 0 || !case.edited.is_empty());
-    let tuned = moved.map(|tuned| (&tuned.ran, names::tuned as fn(&str) -> String));
-    match case.account {
-        None => [first, None, tuned],
-        Some(_) => {
-            let recorded = case.recorded.as_ref().map(|ran| (ran, names::scenario as fn(&str) -> String));
-            // Where it went no further, the first run is not the last one.
-            let stopped = case.failure.is_some();
-            [recorded, first.filter(|_| stopped || tuned.is_some()), tuned.or(first.filter(|_| !stopped))]
+/// The runs of a case that the page shows.
+#[derive(Clone, Copy)]
+struct Runs<'a> {
+    /// The scenario as designed; by accounts the recorded driver's, in the crash as reconstructed.
+    before: Option<RunOf<'a>>,
+    /// By accounts the system's there, where tuning kept another scenario.
+    untuned: Option<RunOf<'a>>,
+    /// By accounts the recorded driver's in that other scenario.
+    told_tuned: Option<RunOf<'a>>,
+    /// The scenario as tuned; by accounts the system's last run.
+    after: Option<RunOf<'a>>,
+}
+
+impl<'a> Runs<'a> {
+    fn of(case: &'a Case) -> Self {
+        let scenario = |ran: &'a Option<Ran>| ran.as_ref().map(|ran| (ran, names::scenario as fn(&str) -> String));
+        let tuned = |ran: &'a Ran| (ran, names::tuned as fn(&str) -> String);
+        let first = scenario(&case.first);
+        let moved = case.tuned.as_ref().filter(|tuned| tuned.is_another(&case.edited)).map(|moved| tuned(&moved.ran));
+        match case.account {
+            None => Self { before: first, untuned: None, told_tuned: None, after: moved },
+            Some(_) => {
+                // Where it went no further, the first run is not the last one.
+                let stopped = case.failure.is_some();
+                Self {
+                    before: scenario(&case.recorded),
+                    untuned: first.filter(|_| stopped || moved.is_some()),
+                    told_tuned: case.recorded_tuned.as_ref().map(tuned),
+                    after: moved.or(first.filter(|_| !stopped)),
+                }
+            }
         }
     }
 }
@@ -132,7 +151,7 @@ fn run_row(suite: &Suite, ran: &Ran, file: &str) -> RunRow {
 /// The heavy part of a case.
 pub(super) fn case(suite: &Suite, case: &Case) -> CaseView {
     let id = &case.cluster.scenario_id;
-    let [before, untuned, after] = runs(case);
+    let Runs { before, untuned, told_tuned, after } = Runs::of(case);
     CaseView {
         scenario_id: id.clone(),
         narrative: case.narrative.as_ref().map(|(narrative, _)| narrative.clone()),
@@ -141,6 +160,7 @@ pub(super) fn case(suite: &Suite, case: &Case) -> CaseView {
         drawing: before.or(after).map(|(ran, _)| ran.scenario.drawing()).unwrap_or_default(),
         before: before.map(|(ran, file)| run_view(suite, ran, &file(id))),
         untuned: untuned.map(|(ran, file)| run_view(suite, ran, &file(id))),
+        told_tuned: told_tuned.map(|(ran, file)| run_view(suite, ran, &file(id))),
         after: after.map(|(ran, file)| run_view(suite, ran, &file(id))),
         triage: case.triage.clone(),
         reference: case.reference.as_ref().map(|run| RunTrace { run: run.clone(), series: series(&run.rollout) }),

@@ -117,7 +117,7 @@ fn remarks(diagnostics: &[Diagnostic]) -> Markup {
 }
 
 /// Words of a suite that goes by accounts.
-const OF_ACCOUNTS: [(&str, &str); 11] = [
+const OF_ACCOUNTS: [(&str, &str); 12] = [
     (
         "Reconstructed, stated",
         "An incident is reconstructed where its scenario contradicts no fact of its reports and leaves out nothing that the two did; else the reason is counted. A fact is stated where a narrative or a column says it, as far as the program read it: what it misread, it cannot notice.",
@@ -133,6 +133,10 @@ const OF_ACCOUNTS: [(&str, &str); 11] = [
     (
         "As told",
         "The run of the recorded driver, a script that does what the report says, in the crash as reconstructed. It is checked against the report.",
+    ),
+    (
+        "As told, tuned",
+        "The recorded driver in the scenario that tuning kept, where that is another one: the same record with other values for what it leaves open, and not the crash as reconstructed.",
     ),
     (
         "Tested, as reconstructed",

@@ -62,6 +62,9 @@ fn modes(view: &CaseView) -> Vec<(&'static str, String, bool)> {
     if view.untuned.is_some() {
         modes.push(("untuned", words::capital(names.untuned), true));
     }
+    if view.told_tuned.is_some() {
+        modes.push(("toldTuned", words::capital(names.told_tuned), true));
+    }
     modes.push(("after", words::capital(names.after), view.after.is_some()));
     modes
 }
@@ -208,7 +211,7 @@ fn uncapital(name: &str) -> String {
     }
 }
 
-/// The few numbers everybody looks for, before and after.
+/// The few numbers everybody looks for, before and after; the recorded driver's in the crash as reconstructed alone.
 fn numbers(case: &CaseView) -> Markup {
     let last = case.last_run();
     let worst = |run: &RunView, of: fn(&recrash_model::metrics::PartnerMetrics) -> Option<f64>, least: bool| {
@@ -227,7 +230,8 @@ fn numbers(case: &CaseView) -> Markup {
             }
         }
     };
-    let names: Vec<&str> = case.runs().into_iter().map(|(name, _)| name).collect();
+    let told_tuned = case.names().told_tuned;
+    let names: Vec<&str> = case.runs().into_iter().map(|(name, _)| name).filter(|name| *name != told_tuned).collect();
     html! {
         @if names.len() > 1 { p.muted.small { "Each value: " (names.join(" \u{2192} ")) "." } }
         dl.tiles.compact {

@@ -1,7 +1,7 @@
 //! Faithfulness and metrics of a case, the run as designed beside the tuned one.
 
 use super::{Case, parts, zones};
-use crate::view::RunView;
+use crate::view::{RunNames, RunView};
 use crate::words;
 use maud::{Markup, html};
 use recrash_model::metrics::{Check, PartnerMetrics};
@@ -33,7 +33,7 @@ pub fn checks(case: Case) -> Markup {
 
 /// Whether this run is held against the record; what the system under test does is its own.
 fn is_held(case: Case, name: &str) -> bool {
-    case.row.account.is_none() || name == case.row.names().before
+    case.row.account.is_none() || RunNames::is_recorded(name)
 }
 
 fn check_row(check: &Check) -> Markup {

@@ -53,6 +53,8 @@ fn retold() -> SuiteView {
         // The recorded driver crashes in every one.
         case.before = Some(run(&like, Some(Cause::WasStruck)));
         case.after = Some(run(&like, last));
+        // In the tuned scene it comes to another crash.
+        case.told_tuned = untuned.as_ref().map(|_| RunRow { rerun_command: "tuned".into(), ..run(&like, None) });
         (case.untuned, case.triage, case.refused) = (untuned, None, None);
     }
     suite
@@ -123,6 +125,7 @@ fn the_table_has_a_row_for_each_run_and_marks_what_only_tuning_found() {
         .map(|row| ["run", "failed", "struck_standing", "found_by_tuning"].map(|name| &row[at(name)]))
         .collect();
     let recorded = ["as told", "", "", ""];
+    let recorded_tuned = ["as told, tuned", "", "", ""];
     let drove: Vec<&str> = rows.iter().take(2).map(|row| &row[at("ego")]).collect();
     assert_eq!(drove, ["recorded", "metadrive-idm"]);
     assert_eq!(
@@ -134,12 +137,19 @@ fn the_table_has_a_row_for_each_run_and_marks_what_only_tuning_found() {
             ["tested", "true", "true", "false"],
             recorded,
             ["tested", "false", "false", ""],
+            recorded_tuned,
             ["tuned", "true", "false", "true"],
             recorded,
             ["tested", "false", "false", ""],
+            recorded_tuned,
             ["tuned", "false", "false", "false"],
         ]
     );
+    for row in rows.iter().filter(|row| row[at("run")].starts_with("as told")) {
+        let is_tuned = &row[at("run")] == recorded_tuned[0];
+        assert_eq!(&row[at("command")] == "tuned", is_tuned, "the command is of its own run");
+        assert_eq!(&row[at("ego")], "recorded");
+    }
 }
 
 #[test]
