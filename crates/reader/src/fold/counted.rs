@@ -11,7 +11,7 @@ use super::undone::not_done;
 use crate::chunk::{Joint, Spot};
 use crate::frame::Frame;
 use crate::lexicon::{Form, Progress, Relation, Sense};
-use crate::token::Token;
+use crate::token::{Token, word};
 use crate::world::{Actor, SUBJECT};
 use recrash_model::account::{Act, KindGroup, Manner};
 use recrash_model::template::Movement;
@@ -199,10 +199,11 @@ pub(super) fn gains_speed(reading: &Reading<'_>, number: usize, frame: &Frame) -
 
 /// Whether who drove along began to proceed "straight" or "through", and nothing told since had made it stand.
 pub(super) fn begins_to_go_on(reading: &Reading<'_>, number: usize, frame: &Frame) -> bool {
-    let word = |at: usize| reading.story.tokens.get(at).map_or("", |token| token.text.as_str());
-    let goes =
-        (frame.first..frame.end).any(|at| ["proceed", "continu", "driv"].iter().any(|stem| word(at).starts_with(stem)));
-    let on = goes && (word(frame.end - 1) == "straight" || matches!(word(frame.end), "straight" | "through"));
+    let goes = (frame.first..frame.end)
+        .any(|at| ["proceed", "continu", "driv"].iter().any(|stem| reading.story.word(at).starts_with(stem)));
+    let on = goes
+        && (reading.story.word(frame.end - 1) == "straight"
+            || matches!(reading.story.word(frame.end), "straight" | "through"));
     let waits = |(other, before): (usize, &Frame)| other < number && before.sense == Sense::Yield && before.happened();
     let waited = reading.before(SUBJECT).any(waits);
     // Of others less is told: they may have stood.
@@ -316,7 +317,7 @@ pub(super) fn in_headline(reading: &Reading<'_>, frame: &Frame) -> bool {
 /// tells of something else that it did.
 pub(super) fn names_mode(reading: &Reading<'_>, number: usize, frame: &Frame) -> bool {
     let tokens = &reading.story.tokens;
-    let word = |at: usize| tokens.get(at).map_or("", |token| token.text.as_str());
+    let word = |at: usize| word(tokens, at);
     let drives = matches!(word(frame.first), "operating" | "operated" | "driven" | "driving");
     let clause = (frame.first..frame.first + MODE_WITHIN).map(word).take_while(|word| !matches!(*word, "," | "."));
     let mode = clause.into_iter().any(|word| word == "mode");

@@ -4,7 +4,7 @@ use super::Reading;
 use super::controls::{in_its_queue, is_lamp, shown};
 use crate::frame::Frame;
 use crate::lexicon::{COMPANY, Lexicon, Meaning, Progress, Relation, Sense};
-use crate::token::Token;
+use crate::token::{Token, word};
 use crate::world::{Actor, SUBJECT};
 use recrash_model::account::{Act, Fact, Kind, KindGroup, SignalState, Source, StandReason};
 
@@ -214,14 +214,13 @@ fn is_of_another(tokens: &[Token], at: usize, reason: StandReason) -> bool {
 
 /// "was stopped at a red light with a line of vehicles behind it": it stands in no queue for that. The token behind "line of".
 fn is_behind_it(tokens: &[Token], end: usize) -> bool {
-    let word = |at: usize| tokens.get(at).map_or("", |token| token.text.as_str());
-    let several = matches!(word(end), "vehicles" | "cars" | "traffic" | "trucks");
+    let several = matches!(word(tokens, end), "vehicles" | "cars" | "traffic" | "trucks");
     let at = end + usize::from(several);
     let own = matches!(
-        (word(at + 1), word(at + 2)),
+        (word(tokens, at + 1), word(tokens, at + 2)),
         ("it" | "them", _) | ("the", "av" | "vehicle" | "subject" | "ego" | COMPANY)
     );
-    word(at) == "behind" && own
+    word(tokens, at) == "behind" && own
 }
 
 /// "stopped for a paramedic on foot": why, by whom it stops for.

@@ -344,9 +344,9 @@ fn named_with_another(clues: &Clues<'_>) -> Option<Fact<Origin>> {
     let (reading, actor) = (clues.reading, clues.actor);
     let actors = &reading.story.world.actors;
     let (first, end) = actors[actor].kind_tokens?;
-    let word = |at: usize| reading.story.tokens.get(at).map_or("", |token| token.text.as_str());
-    let article = usize::from(first > 0 && matches!(word(first - 1), "a" | "an" | "the" | "two" | "another"));
-    let and = first.checked_sub(1 + article).filter(|at| word(*at) == "and")?;
+    let article =
+        usize::from(first > 0 && matches!(reading.story.word(first - 1), "a" | "an" | "the" | "two" | "another"));
+    let and = first.checked_sub(1 + article).filter(|at| reading.story.word(*at) == "and")?;
     let ahead = |other: &usize| {
         let before = actors[*other].kind_tokens.is_some_and(|(_, end)| end == and);
         before && first_relation(&Clues { reading, actor: *other }) == Some(Relation::Ahead)
@@ -468,9 +468,8 @@ fn at_side_of_road(clues: &Clues<'_>) -> Option<Fact<Origin>> {
 /// "a cord held by a man on the west sidewalk": where who is named so stands, and the token that says it.
 fn side_behind_its_name(reading: &Reading<'_>, actor: Actor, own: Option<Compass>) -> Option<(LeftRight, usize)> {
     let (_, end) = reading.story.world.actors[actor].kind_tokens?;
-    let word = |at: usize| reading.story.tokens.get(at).map_or("", |token| token.text.as_str());
-    let at = end + 1 + usize::from(word(end + 1) == "the");
-    let stands = matches!(word(end), "on" | "at" | "along");
+    let at = end + 1 + usize::from(reading.story.word(end + 1) == "the");
+    let stands = matches!(reading.story.word(end), "on" | "at" | "along");
     side_named_at(reading, at, own).filter(|_| stands).map(|side| (side, at))
 }
 
@@ -506,15 +505,16 @@ fn queue_of(reading: &Reading<'_>, actor: Actor) -> Option<(usize, usize)> {
     let story = &reading.story;
     let (first, end) = story.world.actors[actor].kind_tokens?;
     let from = first.checked_sub(2)?;
-    let word = |at: usize| story.tokens.get(at).map_or("", |token| token.text.as_str());
-    let queue = ["queue", "line"].contains(&word(from)) && word(from + 1) == "of";
+    let queue = ["queue", "line"].contains(&story.word(from)) && story.word(from + 1) == "of";
     // "in queued traffic", "in a traffic queue".
-    let traffic = word(end - 1) == "traffic"
-        && (matches!(word(first - 1), "in" | "behind") || word(first) == "a" && word(from + 1) == "in");
-    let stands = (first..end).any(|at| matches!(word(at), "queued" | "backed" | "stopped" | "standing" | "stationary"));
-    let jam = matches!(word(end), "queue" | "jam" | "backup");
+    let traffic = story.word(end - 1) == "traffic"
+        && (matches!(story.word(first - 1), "in" | "behind")
+            || story.word(first) == "a" && story.word(from + 1) == "in");
+    let stands =
+        (first..end).any(|at| matches!(story.word(at), "queued" | "backed" | "stopped" | "standing" | "stationary"));
+    let jam = matches!(story.word(end), "queue" | "jam" | "backup");
     // "stopped in traffic".
-    let plain = end == first + 1 && word(first - 1) == "in";
+    let plain = end == first + 1 && story.word(first - 1) == "in";
     (queue || traffic && (stands || jam || plain)).then_some((from, end))
 }
 
@@ -522,10 +522,12 @@ fn queue_of(reading: &Reading<'_>, actor: Actor) -> Option<(usize, usize)> {
 fn in_that_queue(clues: &Clues<'_>) -> Option<Fact<Origin>> {
     let (reading, actor) = (clues.reading, clues.actor);
     let known = &reading.story.world.actors[actor];
-    let word = |at: usize| reading.story.tokens[at].text.as_str();
     let queues = |(number, _): &(usize, &Frame)| {
         let (first, end) = reading.window(*number);
-        (first..end).any(|at| word(at).starts_with("queue") || matches!(word(at), "lined" | "backed" | "standstill"))
+        (first..end).any(|at| {
+            reading.story.word(at).starts_with("queue")
+                || matches!(reading.story.word(at), "lined" | "backed" | "standstill")
+        })
     };
     let (_, queue) = reading.before(actor).find(queues).filter(|_| known.several)?;
     if !known.kind.is_some_and(Kind::is_vehicle) {
@@ -534,11 +536,11 @@ fn in_that_queue(clues: &Clues<'_>) -> Option<Fact<Origin>> {
     let stands = |frame: &Frame| matches!(frame.act(), Some(Act::Hold | Act::Stop)) && frame.happened();
     reading.before(SUBJECT).filter(|(_, frame)| stands(frame)).find_map(|(number, _)| {
         let (first, end) = reading.window(number);
-        (first..end.saturating_sub(1)).filter(|at| word(*at) == "in").find_map(|at| {
-            let line = matches!(word(at + 1), "that" | "the" | "this")
+        (first..end.saturating_sub(1)).filter(|at| reading.story.word(*at) == "in").find_map(|at| {
+            let line = matches!(reading.story.word(at + 1), "that" | "the" | "this")
                 && at + 2 < end
-                && matches!(word(at + 2), "queue" | "line");
-            let it = word(at + 1) == "it" && reading.story.frames[number].sentence == queue.sentence;
+                && matches!(reading.story.word(at + 2), "queue" | "line");
+            let it = reading.story.word(at + 1) == "it" && reading.story.frames[number].sentence == queue.sentence;
             (line || it).then(|| reading.told(Origin::Ahead, at, at + if line { 3 } else { 2 }))
         })
     })

@@ -7,6 +7,7 @@ use crate::fold::origin::lane_side;
 use crate::fold::origin::places::{at_curb, in_stall, is_across, side_named, side_of_road, side_of_road_of, stood_in};
 use crate::frame::Frame;
 use crate::lexicon::{Relation, Sense};
+use crate::token::word;
 use crate::world::SUBJECT;
 use recrash_model::account::{Act, ActFact, ContactState, KindGroup, LeftRight, Origin, Source, told};
 use recrash_model::zones::ContactZone as Z;
@@ -193,8 +194,8 @@ impl Case<'_> {
             self.reading.story.frames.iter().any(|other| {
                 (named..frame.first).contains(&other.first) && other.who.is_some_and(|who| who != self.actor)
             });
-        let word = |at: usize| words.get(at).map_or("", |token| token.text.as_str());
-        let curb = (0..words.len()).any(|at| matches!(word(at), "curb" | "curbside") && word(at + 1) != "lane");
+        let curb =
+            (0..words.len()).any(|at| matches!(word(words, at), "curb" | "curbside") && word(words, at + 1) != "lane");
         let drove = words.iter().any(|token| matches!(token.text.as_str(), "traveling" | "driving" | "passing"));
         if others || drove || !curb {
             return None;
