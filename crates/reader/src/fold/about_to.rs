@@ -9,7 +9,7 @@ use recrash_model::account::{Act, ActFact, Fact, LeftRight};
 
 /// "waiting to make an unprotected left turn", "in preparation for a left turn": of who is not told to have begun a turn.
 pub(super) fn turns_next(reading: &Reading<'_>, actor: Actor, acts: &[ActFact]) -> Option<Fact<LeftRight>> {
-    let turns = |fact: &ActFact| matches!(fact.act, Act::Turn | Act::UTurn) && !fact.after_contact;
+    let turns = |fact: &ActFact| fact.act.turns() && !fact.after_contact;
     if acts.iter().any(turns) {
         return None;
     }

@@ -215,7 +215,7 @@ pub(super) fn stood_alongside(reading: &Reading<'_>, actor: Actor, mut acts: Vec
     let at_its_side = |(relation, to): &(Relation, Option<Actor>)| {
         matches!(relation, Relation::Beside | Relation::Left | Relation::Right) && *to == Some(actor)
     };
-    let stands = |frame: &Frame| matches!(frame.act(), Some(Act::Stop | Act::Hold)) && frame.happened();
+    let stands = |frame: &Frame| frame.act().is_some_and(Act::stands) && frame.happened();
     let stood = reading.before(SUBJECT).find(|(_, frame)| stands(frame) && frame.relations.iter().any(at_its_side));
     let Some((number, frame)) = stood.filter(|_| known.kind.is_some_and(Kind::is_vehicle) && !known.several) else {
         return acts;
@@ -300,7 +300,7 @@ fn is_done(reading: &Reading<'_>, frame: &Frame) -> bool {
 }
 
 fn stands(fact: &ActFact) -> bool {
-    matches!(fact.act, Act::Stop | Act::Hold)
+    fact.act.stands()
 }
 
 /// Whether an act is told behind "after", of the clause with the act of this number before it: "stopped after turning left".

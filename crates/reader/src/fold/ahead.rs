@@ -89,7 +89,7 @@ fn gone_past(reading: &Reading<'_>, actor: Actor, (first, end): (usize, usize)) 
             && frame.first < first
             && reading.story.sentences[frame.sentence].end > first
     };
-    let stands = |act: Act| matches!(act, Act::Hold | Act::Stop | Act::Park);
+    let stands = |act: Act| act.rests();
     let still = reading.before(actor).filter_map(|(_, frame)| frame.act()).any(stands);
     (goes && !still && reading.before(SUBJECT).any(leaves)).then_some((first, end))
 }

@@ -127,7 +127,7 @@ impl Clause<'_> {
         if self.ran == Some(breaks) {
             return Some(Obeyed::No);
         }
-        let stops = matches!(self.ran, Some(Act::Stop | Act::Hold)) && state != Some(SignalState::Green);
+        let stops = self.ran.is_some_and(Act::stands) && state != Some(SignalState::Green);
         // "was slowing for a red light", and did not go on into the junction.
         let slows = || {
             self.ran == Some(Act::Slow)
@@ -191,7 +191,7 @@ fn goes_in(reading: &Reading<'_>, actor: Actor, number: usize) -> bool {
 pub(super) fn in_its_queue(reading: &Reading<'_>, number: usize, end: usize) -> usize {
     let story = &reading.story;
     let frame = &story.frames[number];
-    let stands = matches!(frame.act(), Some(Act::Hold | Act::Stop)) && frame.happened();
+    let stands = frame.act().is_some_and(Act::stands) && frame.happened();
     let words = &story.tokens[frame.first..end.max(frame.first)];
     let line = words.iter().any(|token| matches!(token.text.as_str(), "line" | "queue" | "row" | "column"));
     let behind = frame.relations.iter().any(|(relation, to)| *relation == Relation::Behind && to.is_some());
@@ -200,7 +200,7 @@ pub(super) fn in_its_queue(reading: &Reading<'_>, number: usize, end: usize) -> 
     }
     let next = story.frames[number + 1..].iter().find(|next| next.first >= end && next.sentence == frame.sentence);
     let Some(queue) = next.filter(|next| next.who.is_some_and(|who| who != SUBJECT)) else { return end };
-    let waits = matches!(queue.act(), Some(Act::Hold | Act::Stop)) || story.tokens[queue.first].text == "held";
+    let waits = queue.act().is_some_and(Act::stands) || story.tokens[queue.first].text == "held";
     let sentence = story.sentences[frame.sentence].end;
     let goes_on =
         |other: &&Frame| other.first > queue.first && other.sentence == frame.sentence && other.who != queue.who;
@@ -254,7 +254,7 @@ fn was_at_a_sign(reading: &Reading<'_>, all: &mut Vec<Fact<Control>>) {
         let covered =
             before().any(|(number, frame)| frame.who.is_some() && reading.window(number).1 > at && !frame.aside);
         let last = before().next_back().map(|(_, frame)| frame);
-        let stood = |frame: &Frame| matches!(frame.act(), Some(Act::Hold | Act::Stop)) && frame.happened();
+        let stood = |frame: &Frame| frame.act().is_some_and(Act::stands) && frame.happened();
         let own = last.filter(|frame| frame.who == Some(SUBJECT) && stood(frame));
         // "stopped behind a van which was at the stop sign", "stopped and a van was at the sign": that was.
         let other = |at: usize| {
@@ -299,7 +299,7 @@ fn of_that_queue(reading: &Reading<'_>, all: &mut Vec<Fact<Control>>, turned: Op
 fn of_those_ahead(reading: &Reading<'_>, all: &mut Vec<Fact<Control>>, turned: Option<SignalState>) {
     let story = &reading.story;
     let word = |at: usize| story.word(at);
-    let stands = |frame: &Frame| matches!(frame.act(), Some(Act::Hold | Act::Stop)) && frame.happened();
+    let stands = |frame: &Frame| frame.act().is_some_and(Act::stands) && frame.happened();
     let ahead = |who: Actor| {
         who != SUBJECT && story.world.actors[who].relations.iter().any(|(relation, _)| *relation == Relation::Ahead)
     };

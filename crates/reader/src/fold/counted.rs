@@ -62,7 +62,7 @@ fn tells_no_act(reading: &Reading<'_>, number: usize, frame: &Frame, act: Act) -
         Act::Fall => frame.who == Some(SUBJECT) && frame.with.is_some() && reading.doer(frame) == Some(SUBJECT),
         Act::Slow => {
             let moved = || last_act(reading, number, frame, |_| true);
-            avoids(reading, frame) && matches!(moved(), Some(Act::Hold | Act::Stop))
+            avoids(reading, frame) && moved().is_some_and(Act::stands)
         }
         _ => false,
     };
@@ -326,7 +326,7 @@ pub(super) fn names_mode(reading: &Reading<'_>, number: usize, frame: &Frame) ->
         other < number
             && before.sentence == frame.sentence
             && before.happened()
-            && matches!(before.act(), Some(Act::Stop | Act::Hold))
+            && before.act().is_some_and(Act::stands)
     };
     apposed && frame.who.is_some_and(|who| reading.before(who).any(stands))
 }
@@ -343,7 +343,7 @@ fn goes_on_from_a_stand(reading: &Reading<'_>, number: usize, frame: &Frame, wor
     let forward = words.split([',', '.', ';']).next().is_some_and(|clause| clause.contains("forward"));
     let stood = |act: Option<Act>| match act {
         Some(Act::Reverse) => forward,
-        act => matches!(act, Some(Act::Hold | Act::Stop)),
+        act => act.is_some_and(Act::stands),
     };
     // "The stationary AV was in autonomous mode. It moved forward".
     let last = last_act(reading, number, frame, |frame| !frame.aside);
@@ -414,7 +414,7 @@ fn goes_at_green(reading: &Reading<'_>, frame: &Frame, words: &str) -> bool {
     let own = reading.story.world.actors[SUBJECT].heading.map(|(heading, ..)| heading);
     let other_way = known.heading.is_some_and(|(heading, ..)| own.is_some_and(|own| own != heading));
     let comes = known.relations.iter().any(|(relation, _)| matches!(relation, Relation::Behind | Relation::Opposite));
-    let stands = |other: &Frame| matches!(other.act(), Some(Act::Hold | Act::Stop));
+    let stands = |other: &Frame| other.act().is_some_and(Act::stands);
     let waits = |other: &Frame| other.who == Some(SUBJECT) && other.sentence == frame.sentence && stands(other);
     // "It came to a stop beside a van. When the light turned green, ...": it stood already.
     let own = reading.before(SUBJECT).filter(|(_, other)| other.first < frame.first && other.happened());

@@ -86,7 +86,7 @@ pub(super) fn beside(reading: &Reading<'_>, frame: &Frame, fact: &ActFact) -> Op
     if let Some((first, end)) = already_inside(reading, frame) {
         return Some(entry(first, end, true, false));
     }
-    let stands = matches!(fact.act, Act::Stop | Act::Hold);
+    let stands = fact.act.stands();
     let moves = matches!(fact.act, Act::Follow | Act::SetOff | Act::Accelerate | Act::Slow);
     let end = behind_verb(reading, frame, stands).filter(|_| stands || moves)?;
     Some(entry(frame.first, end, stands, moves && (fact.begun || stays_begun(reading, frame))))
@@ -212,7 +212,7 @@ pub(super) fn of_door(reading: &Reading<'_>, frame: &Frame) -> (usize, usize) {
 
 /// The token behind the words of an act: of who goes into or through an intersection, or stands in a lane, up to that word.
 fn reach(reading: &Reading<'_>, frame: &Frame, act: Act) -> usize {
-    if matches!(act, Act::Hold | Act::Stop | Act::Park) {
+    if act.rests() {
         return in_a_lane(reading, frame).or_else(|| at_the_edge(reading, frame)).unwrap_or(frame.end);
     }
     if matches!(act, Act::Drift | Act::Swerve) {
@@ -253,7 +253,7 @@ fn stays_begun(reading: &Reading<'_>, frame: &Frame) -> bool {
             && later.first > frame.first
             && reading.doer(later) == who
             && later.happened()
-            && matches!(later.act(), Some(Act::Stop | Act::Hold | Act::Slow))
+            && later.act().is_some_and(Act::slows)
     };
     begins(reading, frame) && !reading.story.frames.iter().any(goes_on)
 }

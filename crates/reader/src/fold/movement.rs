@@ -38,7 +38,7 @@ fn of_subject(reading: &Reading<'_>, account: &Account) -> Option<Fact<Movement>
     }
     // Who veers off the road leaves its lane.
     let fixed = matches!(kind, Some(Kind::Wall | Kind::Pole | Kind::Curb | Kind::Barrier));
-    let veers = sv.acts.iter().find(|fact| fact.act == Act::Swerve && !fact.after_contact && !fact.begun);
+    let veers = sv.acts.iter().find(|fact| fact.act == Act::Swerve && fact.happened());
     if let (true, Some(veers), Some(Movement::Straight) | None) = (fixed, veers, told(&movement)) {
         movement = Some(Fact { value: Movement::LaneDeparture, source: veers.source.clone() });
     }
@@ -147,7 +147,7 @@ fn by_way(reading: &Reading<'_>, account: &Account, partner: &Party, mut fact: F
     // Who had left the kerb, and stood in a lane since then, enters no more.
     let before: Vec<Act> = partner.acts.iter().filter(|fact| !fact.after_contact).map(|fact| fact.act).collect();
     let left = before.iter().position(|act| *act == Act::PullOut);
-    let stood = left.is_some_and(|left| before[left + 1..].iter().any(|act| matches!(act, Act::Stop | Act::Hold)));
+    let stood = left.is_some_and(|left| before[left + 1..].iter().any(|act| act.stands()));
     if let (Movement::EnteringTraffic, true, true, Some(column)) = (fact.value, stood, same_way, column) {
         fact = Fact::of_column(column, "CP Pre-Crash Movement");
     }

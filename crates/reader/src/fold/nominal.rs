@@ -66,12 +66,12 @@ struct Turned {
 
 /// Adds the turn in which somebody was, where none is told with a verb: before it slowed or stood in it.
 pub(super) fn add_turn(reading: &Reading<'_>, actor: Actor, all: &mut Vec<ActFact>) {
-    let turns = |fact: &ActFact| matches!(fact.act, Act::Turn | Act::UTurn) && !fact.after_contact;
+    let turns = |fact: &ActFact| fact.act.turns() && !fact.after_contact;
     if all.iter().any(turns) {
         return;
     }
     let Some(Turned { words, number, side, begun }) = turn_of(reading, actor) else { return };
-    let waits = |fact: &ActFact| matches!(fact.act, Act::Stop | Act::Hold | Act::Slow) && !fact.after_contact;
+    let waits = |fact: &ActFact| fact.act.slows() && !fact.after_contact;
     let before = all.iter().filter(|fact| !fact.after_contact).count();
     // Which it left off: to stand for the second time.
     let first = if begun { all.iter().rposition(waits) } else { all.iter().position(waits) };
@@ -92,7 +92,7 @@ fn turn_of(reading: &Reading<'_>, actor: Actor) -> Option<Turned> {
     (0..until).find_map(|at| {
         if let Some((words, side)) = left_off(reading, at) {
             let number = told_with(reading, actor, at)?;
-            let waits = matches!(reading.story.frames[number].act(), Some(Act::Stop | Act::Slow | Act::Hold));
+            let waits = reading.story.frames[number].act().is_some_and(Act::slows);
             let goes = reading.before(actor).any(|(other, frame)| other < number && frame.act().is_some_and(goes_on));
             // What went back out of it is told of that.
             let back = reading.did(actor, Act::Reverse);
@@ -100,7 +100,7 @@ fn turn_of(reading: &Reading<'_>, actor: Actor) -> Option<Turned> {
         }
         if let Some((words, side)) = stopped_within(reading, at) {
             let number = told_with(reading, actor, at)?;
-            let stands = matches!(reading.story.frames[number].act(), Some(Act::Stop | Act::Hold));
+            let stands = reading.story.frames[number].act().is_some_and(Act::stands);
             return stands.then_some(Turned { words, number, side, begun: false });
         }
         let words = slip_lane(reading, at).filter(|_| actor == SUBJECT)?;

@@ -44,7 +44,7 @@ fn side_of_cut_in(reading: &Reading<'_>, number: usize) -> Option<LeftRight> {
     let evades = |(other, later): &(usize, &Frame)| {
         *other > number
             && later.sentence <= frame.sentence + 1
-            && matches!(later.act(), Some(Act::Swerve | Act::Drift | Act::LaneChange))
+            && later.act().is_some_and(Act::leaves_line)
             && later.happened()
     };
     reading.before(SUBJECT).find(evades).and_then(|(_, later)| later.side)
@@ -153,7 +153,7 @@ pub(super) fn back_to_the_middle(
     let words = &reading.story.tokens[frame.first..frame.end];
     let has = |word: &str| words.iter().any(|token| token.text.starts_with(word));
     let middle = has("recenter") || (has("center") || has("middle")) && !has("line") && !has("cross");
-    let aside = |fact: &&ActFact| matches!(fact.act, Act::Drift | Act::LaneChange | Act::Swerve);
+    let aside = |fact: &&ActFact| fact.act.leaves_line();
     let last = before.iter().rfind(aside)?;
     last.side.map(LeftRight::other).filter(|_| middle && act == Act::Drift)
 }

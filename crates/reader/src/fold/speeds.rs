@@ -118,9 +118,9 @@ pub(super) fn is_of_last_contact(reading: &Reading<'_>, sentence: usize) -> bool
 
 /// Whether somebody braked or stopped behind this frame, before the contact.
 fn slows_later(reading: &Reading<'_>, actor: Actor, number: usize) -> bool {
-    reading.before(actor).any(|(later, frame)| {
-        later > number && frame.happened() && matches!(frame.act(), Some(Act::Slow | Act::Stop | Act::Hold))
-    })
+    reading
+        .before(actor)
+        .any(|(later, frame)| later > number && frame.happened() && frame.act().is_some_and(Act::slows))
 }
 
 /// Who is meant by a name, of which these words tell: the subject vehicle, or the partner of a kind that fits.

@@ -415,7 +415,7 @@ impl Parser<'_> {
     fn leaves_lane(&mut self, side: Option<LeftRight>, placed: &Placed, carry: &Carry) {
         let (Some(side), Some(frame), true) = (side, carry.frame, self.is_from_a_lane(placed)) else { return };
         let taken = &mut self.frames[frame];
-        if matches!(taken.act(), Some(Act::LaneChange | Act::Drift | Act::Swerve)) && taken.side.is_none() {
+        if taken.act().is_some_and(Act::leaves_line) && taken.side.is_none() {
             taken.side = Some(side.other());
         }
     }

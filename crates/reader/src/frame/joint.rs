@@ -182,7 +182,7 @@ impl Parser<'_> {
         let who = last.who.filter(|who| *who != SUBJECT && joint == Joint::While && leaves && turns)?;
         let here = |frame: &&Frame| frame.sentence == self.sentence && frame.who == Some(SUBJECT);
         let mut own = self.frames.iter().filter(here);
-        let stops = own.any(|frame| matches!(frame.act(), Some(Act::Stop | Act::Hold)));
+        let stops = own.any(|frame| frame.act().is_some_and(Act::stands));
         let last = carry.last.clone().filter(|last| last.actor == who);
         last.filter(|_| stops && carry.subject.as_ref().is_some_and(|subject| subject.actor == SUBJECT))
     }

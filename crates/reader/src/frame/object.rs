@@ -281,7 +281,7 @@ impl Parser<'_> {
         let Some(before) = frame.checked_sub(1) else { return frame };
         let (facing, stands) = (&self.frames[frame], &self.frames[before]);
         let same = (facing.sentence, facing.who) == (stands.sentence, stands.who);
-        let stood = matches!(stands.act(), Some(Act::Stop | Act::Hold));
+        let stood = stands.act().is_some_and(Act::stands);
         if facing.sense == Sense::Face && same && stood { before } else { frame }
     }
 

@@ -347,7 +347,7 @@ fn stood_before(parser: &Parser<'_>, carry: &Carry) -> bool {
     let Some(subject) = &carry.subject else { return false };
     let own = |frame: &&super::Frame| frame.who == Some(subject.actor) && frame.happened() && frame.act().is_some();
     let last = parser.frames.iter().rev().find(own);
-    last.is_some_and(|last| matches!(last.act(), Some(Act::Hold | Act::Stop | Act::Park)))
+    last.is_some_and(|last| last.act().is_some_and(Act::rests))
 }
 
 /// "was not moving", "had not moved": it stood. "Did not move over" is told of the lane.
@@ -525,7 +525,7 @@ fn stands_over(parser: &Parser<'_>, verb: &Spoken<'_>, carry: &Carry) -> Option<
         && OVER.iter().any(|stem| verb.word(parser).starts_with(stem));
     let who = carry.subject.as_ref().or(carry.last.as_ref()).filter(|_| over && !carry.be && !carry.began)?.actor;
     let last = parser.frames.iter().rev().find(|frame| frame.who == Some(who) && frame.act().is_some())?;
-    let stood = matches!(last.act(), Some(Act::Stop | Act::Hold | Act::Park)) && last.happened();
+    let stood = last.act().is_some_and(Act::rests) && last.happened();
     (stood && last.sentence == parser.sentence).then_some(Sense::Other)
 }
 

@@ -195,9 +195,9 @@ impl Parser<'_> {
         let at_once = matches!(self.tokens[waiting.first + 1].text.as_str(), "on" | "to" | "from");
         let aside = waiting.act() == Some(Act::Pass) && waiting.object.is_none() && waiting.side.is_some() && at_once;
         let mut told = self.frames.iter().rev().filter(|frame| frame.who == Some(SUBJECT) && frame.happened());
-        let stands = told.find(|frame| frame.act().is_some()).is_some_and(|frame| {
-            matches!(frame.act(), Some(Act::Hold | Act::Stop | Act::Park)) && frame.sentence < self.sentence
-        });
+        let stands = told
+            .find(|frame| frame.act().is_some())
+            .is_some_and(|frame| frame.act().is_some_and(Act::rests) && frame.sentence < self.sentence);
         comes && (placed || aside) || stands && waiting.act() == Some(Act::Pass) && waiting.object.is_none()
     }
 
@@ -263,7 +263,7 @@ impl Parser<'_> {
         let frame = carry.frame.map(|frame| &self.frames[frame]).filter(|_| faces)?;
         let first = verb.placed().first;
         let stands_in_queue = |last: &Mention| {
-            matches!(frame.act(), Some(Act::Hold | Act::Stop))
+            frame.act().is_some_and(Act::stands)
                 && carry.governed
                 && last.end == first
                 && self.is_in_queue(frame.end, last.end)

@@ -102,7 +102,7 @@ pub(super) fn side_of_screen(reading: &Reading<'_>, actor: Actor, own: Option<Co
     });
     let against = known.heading.is_some_and(|(heading, ..)| own.is_some_and(|own| own.eighths_to(heading) == 4));
     let opposing = against || known.lane.is_some_and(|(lane, ..)| lane == LaneWord::Opposing);
-    let stands = |act: Option<Act>| matches!(act, Some(Act::Hold | Act::Stop));
+    let stands = |act: Option<Act>| act.is_some_and(Act::stands);
     told.or(opposing.then_some(LeftRight::Left)).or_else(|| side_of_road_of(reading, actor, own, stands))
 }
 
@@ -239,7 +239,7 @@ pub(super) fn behind_in_next_lane(
     side: LeftRight,
 ) -> Option<Source> {
     let goes = |fact: &ActFact| {
-        let over = matches!(fact.act, Act::LaneChange | Act::Swerve | Act::Drift);
+        let over = fact.act.leaves_line();
         over && !fact.after_contact && fact.side == Some(side)
     };
     let both = |frame: &Frame| {

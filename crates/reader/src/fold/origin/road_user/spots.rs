@@ -38,7 +38,7 @@ impl Case<'_> {
 
     /// "stopped behind a truck that had left a driveway and stood across the road": where it stood as the subject vehicle came up to it.
     fn stood_after(&self, number: usize) -> Option<Source> {
-        let stands = |frame: &Frame| matches!(frame.act(), Some(Act::Stop | Act::Hold)) && frame.sense != Sense::Parked;
+        let stands = |frame: &Frame| frame.act().is_some_and(Act::stands) && frame.sense != Sense::Parked;
         let stood = self.frames().any(|(later, frame)| later > number && stands(frame));
         let behind = |frame: &Frame| frame.relations.contains(&(Relation::Behind, Some(self.actor)));
         let mut own = self.reading.before(SUBJECT).filter(|(_, frame)| frame.happened() && behind(frame));
@@ -142,7 +142,7 @@ impl Case<'_> {
         // "stopped in the left lane after it had left the kerb": where it stood.
         let acts = &self.partner.acts;
         let left = acts.iter().position(|fact| fact.act == Act::PullOut && !fact.after_contact);
-        let stands = |fact: &ActFact| matches!(fact.act, Act::Stop | Act::Hold) && !fact.after_contact;
+        let stands = |fact: &ActFact| fact.act.stands() && !fact.after_contact;
         let stood = left.is_some_and(|left| acts[left + 1..].iter().any(stands));
         if let (true, Some(side)) = (stood, lane_side(self.account)) {
             return by_rule(Origin::Beside { side }, "lanes of both");
