@@ -25,7 +25,7 @@ pub use expectation::expectation;
 pub use expressible::inexpressible;
 pub use parameters::parameters;
 pub use rules::telling::tell;
-pub use rules::{Rules, can_stage};
+pub use rules::{Rules, can_stage, own_narrative};
 
 use recrash_model::account::Account;
 use recrash_model::metrics::{Check, Metrics};
@@ -60,11 +60,6 @@ impl<'a> Brief<'a> {
     pub(crate) fn speaker(&self) -> Option<&'a CrashRecord> {
         let speaker = self.account.map(|account| &account.report);
         self.records.iter().find(|record| Some(&record.id) == speaker).or(self.records.first()).copied()
-    }
-
-    /// There is nothing to read.
-    pub(crate) fn no_record(&self) -> AgentError {
-        AgentError::NoRecord { scenario_id: self.scenario_id.to_owned() }
     }
 
     /// The record whose crash a narrative tells; of an invented one the pick, which its surroundings are taken from.
@@ -123,16 +118,11 @@ pub enum Problem {
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum AgentError {
     /// The brief holds no record.
-    #[error("{scenario_id}: there is no record to work from")]
-    NoRecord {
-        /// Scenario.
-        scenario_id: String,
-    },
+    #[error("there is no record to work from")]
+    NoRecord,
     /// The agent has no way to stage this template.
-    #[error("{scenario_id}: the rules cannot stage \"{template}\"; they know {known}")]
+    #[error("the rules cannot stage \"{template}\"; they know {known}")]
     TemplateUnknown {
-        /// Scenario.
-        scenario_id: String,
         /// Template.
         template: Template,
         /// What the agent can stage.

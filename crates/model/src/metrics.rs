@@ -190,6 +190,20 @@ pub enum FindingKind {
 }
 
 impl FindingKind {
+    /// All kinds.
+    pub const ALL: [Self; 10] = [
+        Self::Contact,
+        Self::ObstacleContact,
+        Self::NearMiss,
+        Self::OffRoad,
+        Self::Stuck,
+        Self::HardBraking,
+        Self::BrakingBeyondTyres,
+        Self::PhantomBraking,
+        Self::Oscillation,
+        Self::LaneDeparture,
+    ];
+
     /// Whether a finding of this kind makes the scenario a failed one; the others are odd behaviour worth a look.
     pub fn is_failure(self) -> bool {
         matches!(self, Self::Contact | Self::ObstacleContact | Self::NearMiss | Self::OffRoad | Self::Stuck)

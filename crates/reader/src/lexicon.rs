@@ -17,13 +17,10 @@ const NO_GAP: [&str; 17] = [
     "he", "she",
 ];
 
-/// What a verb says.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// What a verb says. The lexicon names it as here, in small letters, or names an act of the account.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Sense {
-    /// An act of the account.
-    Act(Act),
-    /// An act to one side.
-    Sided(Act, LeftRight),
     /// Stands because it is parked.
     Parked,
     /// Touches.
@@ -64,6 +61,12 @@ pub enum Sense {
     Tow,
     /// Anything else.
     Other,
+    /// An act to one side: an act that has a `side` in the lexicon.
+    #[serde(skip)]
+    Sided(Act, LeftRight),
+    /// An act of the account.
+    #[serde(untagged)]
+    Act(Act),
 }
 
 /// Form of a verb.
@@ -80,7 +83,8 @@ pub enum Form {
 }
 
 /// Where somebody is, seen from somebody else.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Relation {
     /// Behind.
     Behind,
@@ -99,7 +103,8 @@ pub enum Relation {
 }
 
 /// What the adjectives of a noun say.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Adjective {
     /// It stands.
     Stopped,
@@ -124,7 +129,8 @@ pub enum Adjective {
 }
 
 /// Part of a vehicle.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Part {
     /// At the front.
     Front,
@@ -218,12 +224,12 @@ struct File {
     kinds: BTreeMap<Kind, Vec<String>>,
     makes: Makes,
     occupants: Occupants,
-    adjectives: BTreeMap<String, Vec<String>>,
+    adjectives: BTreeMap<Adjective, Vec<String>>,
     verb: Vec<Verb>,
     begun: Begun,
     irregular: BTreeMap<String, Vec<String>>,
-    relations: BTreeMap<String, Vec<String>>,
-    parts: BTreeMap<String, Vec<String>>,
+    relations: BTreeMap<Relation, Vec<String>>,
+    parts: BTreeMap<Part, Vec<String>>,
     reasons: BTreeMap<StandReason, Vec<String>>,
     features: BTreeMap<RoadFeature, Vec<String>>,
     places: BTreeMap<PlaceKind, Vec<String>>,
@@ -251,7 +257,8 @@ struct Occupants {
 
 #[derive(Deserialize)]
 struct Verb {
-    sense: String,
+    sense: Sense,
+    side: Option<LeftRight>,
     #[serde(default)]
     words: Vec<String>,
     #[serde(default)]
@@ -274,104 +281,6 @@ struct Standing {
 struct DriverWords {
     human: Vec<String>,
     system: Vec<String>,
-}
-
-fn sense_of(name: &str) -> Option<Sense> {
-    use Sense::{Act as A, Sided};
-    Some(match name {
-        "contact" => Sense::Contact,
-        "contact_made" => Sense::ContactMade,
-        "rear_end" => Sense::RearEnd,
-        "reverse_contact" => Sense::ReverseContact,
-        "open_door_into" => Sense::OpenDoorInto,
-        "headline" => Sense::Headline,
-        "parked" => Sense::Parked,
-        "turn_left" => Sided(Act::Turn, LeftRight::Left),
-        "turn_right" => Sided(Act::Turn, LeftRight::Right),
-        "approach" => Sense::Approach,
-        "face" => Sense::Face,
-        "yield" => Sense::Yield,
-        "see" => Sense::See,
-        "take_over" => Sense::TakeOver,
-        "push" => Sense::Push,
-        "damage" => Sense::Damage,
-        "light_green" => Sense::LightGreen,
-        "light_red" => Sense::LightRed,
-        "light_yellow" => Sense::LightYellow,
-        "exit_vehicle" => Sense::ExitVehicle,
-        "tow" => Sense::Tow,
-        "other" => Sense::Other,
-        "follow" => A(Act::Follow),
-        "slow" => A(Act::Slow),
-        "accelerate" => A(Act::Accelerate),
-        "stop" => A(Act::Stop),
-        "hold" => A(Act::Hold),
-        "set_off" => A(Act::SetOff),
-        "reverse" => A(Act::Reverse),
-        "pass" => A(Act::Pass),
-        "lane_change" => A(Act::LaneChange),
-        "drift" => A(Act::Drift),
-        "swerve" => A(Act::Swerve),
-        "turn" => A(Act::Turn),
-        "u_turn" => A(Act::UTurn),
-        "pull_out" => A(Act::PullOut),
-        "pull_over" => A(Act::PullOver),
-        "park" => A(Act::Park),
-        "open_door" => A(Act::OpenDoor),
-        "cross" => A(Act::Cross),
-        "enter" => A(Act::Enter),
-        "run_red" => A(Act::RunRed),
-        "run_stop" => A(Act::RunStop),
-        "fail_to_yield" => A(Act::FailToYield),
-        "wrong_way" => A(Act::WrongWay),
-        "lose_control" => A(Act::LoseControl),
-        "fall" => A(Act::Fall),
-        "roll" => A(Act::Roll),
-        "leave" => A(Act::Leave),
-        _ => return None,
-    })
-}
-
-fn adjective_of(name: &str) -> Option<Adjective> {
-    Some(match name {
-        "stopped" => Adjective::Stopped,
-        "parked" => Adjective::Parked,
-        "oncoming" => Adjective::Oncoming,
-        "following" => Adjective::Following,
-        "lead" => Adjective::Lead,
-        "turning" => Adjective::Doing,
-        "another" => Adjective::Another,
-        "first" => Adjective::First,
-        "other" => Adjective::Other,
-        "plain" => Adjective::Plain,
-        _ => return None,
-    })
-}
-
-fn relation_of(name: &str) -> Option<Relation> {
-    Some(match name {
-        "behind" => Relation::Behind,
-        "ahead" => Relation::Ahead,
-        "left" => Relation::Left,
-        "right" => Relation::Right,
-        "beside" => Relation::Beside,
-        "opposite" => Relation::Opposite,
-        "same" => Relation::Same,
-        _ => return None,
-    })
-}
-
-fn part_of(name: &str) -> Option<Part> {
-    Some(match name {
-        "front" => Part::Front,
-        "rear" => Part::Rear,
-        "left" => Part::Left,
-        "right" => Part::Right,
-        "top" => Part::Top,
-        "bottom" => Part::Bottom,
-        "noun" => Part::Noun,
-        _ => return None,
-    })
 }
 
 fn split(phrase: &str) -> Vec<String> {
@@ -477,17 +386,14 @@ impl Lexicon {
         file.makes.words.iter().for_each(|phrase| lexicon.add(phrase, Meaning::Make));
         file.occupants.drivers.iter().for_each(|phrase| lexicon.add(phrase, Meaning::Occupant(Occupant::Driver)));
         file.occupants.riders.iter().for_each(|phrase| lexicon.add(phrase, Meaning::Occupant(Occupant::Rider)));
-        for (name, words) in &file.adjectives {
-            let adjective = adjective_of(name).expect("a group of adjectives");
-            words.iter().for_each(|phrase| lexicon.add(phrase, Meaning::Adjective(adjective)));
+        for (adjective, words) in &file.adjectives {
+            words.iter().for_each(|phrase| lexicon.add(phrase, Meaning::Adjective(*adjective)));
         }
-        for (name, words) in &file.relations {
-            let relation = relation_of(name).expect("a relation");
-            words.iter().for_each(|line| lexicon.add_all(line, Meaning::Relation(relation)));
+        for (relation, words) in &file.relations {
+            words.iter().for_each(|line| lexicon.add_all(line, Meaning::Relation(*relation)));
         }
-        for (name, words) in &file.parts {
-            let part = part_of(name).expect("a part");
-            words.iter().for_each(|phrase| lexicon.add(phrase, Meaning::Part(part)));
+        for (part, words) in &file.parts {
+            words.iter().for_each(|phrase| lexicon.add(phrase, Meaning::Part(*part)));
         }
         lexicon.add_verbs(&file);
         for phrases in lexicon.phrases.values_mut() {
@@ -499,7 +405,10 @@ impl Lexicon {
     /// Verbs in all their forms, and the words that say how far another one came.
     fn add_verbs(&mut self, file: &File) {
         for verb in &file.verb {
-            let sense = sense_of(&verb.sense).expect("a sense");
+            let sense = match (verb.sense, verb.side) {
+                (Sense::Act(act), Some(side)) => Sense::Sided(act, side),
+                (sense, _) => sense,
+            };
             for phrase in verb.words.iter().flat_map(|line| spelled(line)) {
                 let words = split(&phrase);
                 let bends = words.iter().position(|word| word.ends_with('+')).unwrap_or(0);
@@ -698,6 +607,56 @@ mod tests {
         for text in ["went across to the left lane", "eased into the next lane", "pulled over to the far right lane"] {
             assert!(matches!(verb_at_start(text), Some(Meaning::Verb(Sense::Act(Act::LaneChange), _))), "{text}");
         }
+    }
+
+    /// Phrases with a second sense, for where the words behind them rule out the first: "swung into the lane" touches nobody.
+    const SECOND_SENSES: [(&str, Sense, Sense); 6] = [
+        ("fall onto", Sense::Contact, Sense::Act(Act::Fall)),
+        ("knock into", Sense::Contact, Sense::Push),
+        ("move back", Sense::Act(Act::Reverse), Sense::Act(Act::Drift)),
+        ("nudge", Sense::Contact, Sense::Act(Act::Drift)),
+        ("ride up", Sense::Contact, Sense::Act(Act::Follow)),
+        ("swing into", Sense::Contact, Sense::Act(Act::Swerve)),
+    ];
+
+    /// Otherwise it would hang on the order of the file what a phrase means.
+    #[test]
+    fn no_phrase_has_two_meanings_of_one_sort() {
+        let file: File = toml::from_str(TEXT).unwrap();
+        let of_two = SECOND_SENSES.iter().flat_map(|(phrase, one, other)| {
+            let (base, rest) = phrase.split_once(' ').unwrap_or((phrase, ""));
+            let bent = forms(base, &file.irregular);
+            bent.into_iter().map(move |(word, _)| (format!("{word} {rest}").trim().to_owned(), *one, *other))
+        });
+        let of_two: Vec<_> = of_two.collect();
+        let (mut wrong, mut seen) = (Vec::new(), 0);
+        for (first, phrases) in &Lexicon::get().phrases {
+            for (at, phrase) in phrases.iter().enumerate() {
+                let words = format!("{first} {}", phrase.rest.join(" ")).trim().to_owned();
+                for other in phrases[..at].iter().filter(|other| other.rest == phrase.rest) {
+                    match (other.meaning, phrase.meaning) {
+                        (Meaning::Verb(one, _), Meaning::Verb(other, _))
+                            if of_two.contains(&(words.clone(), one, other)) =>
+                        {
+                            seen += 1;
+                        }
+                        // "leaving room" is a form of "leave room", and listed for itself.
+                        (Meaning::Verb(one, form), Meaning::Verb(other, as_form))
+                            if one == other && form != as_form => {}
+                        (one, other) if std::mem::discriminant(&one) != std::mem::discriminant(&other) => {}
+                        (one, other) => wrong.push(format!("{words}: {one:?} and {other:?}")),
+                    }
+                }
+            }
+        }
+        assert!(wrong.is_empty(), "{} phrases:\n{}", wrong.len(), wrong.join("\n"));
+        assert_eq!(seen, of_two.len(), "of {of_two:?}");
+    }
+
+    #[test]
+    fn a_side_stands_beside_acts_alone() {
+        let file: File = toml::from_str(TEXT).unwrap();
+        assert!(file.verb.iter().all(|verb| verb.side.is_none() || matches!(verb.sense, Sense::Act(_))));
     }
 
     #[test]

@@ -90,7 +90,7 @@ pub fn tokens(text: &str) -> Vec<Token> {
     let mut all = Vec::new();
     let mut start = 0;
     while let Some(c) = text[start..].chars().next() {
-        if let Some(token) = masked(text, start).or_else(|| word(text, start)) {
+        if let Some(token) = masked(text, start).or_else(|| spelled(text, start)) {
             start = token.end;
             all.push(token);
             continue;
@@ -128,7 +128,7 @@ fn masked(text: &str, start: usize) -> Option<Token> {
 const MASK_WITHIN: usize = 119;
 
 /// A word or a number.
-fn word(text: &str, start: usize) -> Option<Token> {
+fn spelled(text: &str, start: usize) -> Option<Token> {
     let first = text[start..].chars().next().filter(|c| c.is_alphanumeric() || *c == '#')?;
     let behind = start + first.len_utf8();
     let ends = |(at, c): &(usize, char)| !(c.is_alphanumeric() || *c == '.' && decimal(text, behind + at));
@@ -283,6 +283,16 @@ fn ends_sentence(tokens: &[Token], at: usize) -> bool {
         }
         _ => false,
     }
+}
+
+/// The word of a token; nothing where none is.
+pub(crate) fn word(tokens: &[Token], at: usize) -> &str {
+    tokens.get(at).map_or("", |token| token.text.as_str())
+}
+
+/// Whether a word names a crash.
+pub(crate) fn is_crash_noun(word: &str) -> bool {
+    matches!(word, "collision" | "crash" | "contact" | "impact" | "incident" | "accident")
 }
 
 /// A small number, in a word or in digits.

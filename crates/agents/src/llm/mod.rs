@@ -245,7 +245,7 @@ impl LanguageModel<'_> {
         base: &Account,
         accept: impl Fn(Account) -> Result<T, String>,
     ) -> Result<T, AgentError> {
-        let record = brief.speaker().ok_or_else(|| brief.no_record())?;
+        let record = brief.speaker().ok_or(AgentError::NoRecord)?;
         self.converse(paraphrase_question(self.model, brief)?, &[], |value| {
             let answer: AccountAnswer = fitting(value)?;
             accept(reading::account(&answer, base, record, self.model)?).map_err(|why| vec![why])
@@ -279,7 +279,7 @@ impl LanguageModel<'_> {
 impl Paraphrase for LanguageModel<'_> {
     /// The model reads, the rules write: an account that cannot be staged as the template goes back.
     fn paraphrase(&self, brief: &Brief) -> Result<Outcome<Narrative>, AgentError> {
-        let base = brief.account.ok_or_else(|| brief.no_record())?;
+        let base = brief.account.ok_or(AgentError::NoRecord)?;
         let author = Author::Model(self.model.to_owned());
         let value =
             self.read_until(brief, base, |account| crate::rules::narrative_of(&account, brief, author.clone()))?;

@@ -41,8 +41,7 @@ const MOST_SOURCES: usize = 4;
 pub fn design(brief: &Brief, narrative: &Narrative, feedback: &[Feedback]) -> Result<ScenarioDraft, AgentError> {
     let facts = Facts(&narrative.facts);
     let Some(staging) = staging_of(narrative, &facts) else {
-        let scenario_id = brief.scenario_id.to_owned();
-        return Err(AgentError::TemplateUnknown { scenario_id, template: narrative.template, known: KNOWN });
+        return Err(AgentError::TemplateUnknown { template: narrative.template, known: KNOWN });
     };
     let told = facts
         .find(|value| match value {

@@ -34,6 +34,7 @@ pub(crate) mod staged {
 }
 
 pub(crate) use paraphrase::narrative_of;
+pub use paraphrase::own_narrative;
 
 use crate::{AgentError, Brief, Design, Feedback, Paraphrase};
 use recrash_model::Outcome;

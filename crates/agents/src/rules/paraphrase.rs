@@ -24,15 +24,14 @@ struct Told {
 pub fn paraphrase(brief: &Brief) -> Result<Outcome<Narrative>, AgentError> {
     let ways = stagings(&brief.template);
     if ways.is_empty() {
-        let scenario_id = brief.scenario_id.to_owned();
-        return Err(AgentError::TemplateUnknown { scenario_id, template: brief.template, known: KNOWN });
+        return Err(AgentError::TemplateUnknown { template: brief.template, known: KNOWN });
     }
     let pick = brief.records.first().map(|record| read(record));
     let mut diagnostics = Vec::new();
     let retold = match (&pick, brief.untold) {
         (_, Some(why)) => Err(why.to_owned()),
         (Some(pick), None) => retell(pick, brief, ways),
-        (None, None) => return Err(brief.no_record()),
+        (None, None) => return Err(AgentError::NoRecord),
     };
     let (told, origin) = match retold {
         Ok(told) => (told, Origin::Own),
@@ -48,6 +47,20 @@ pub fn paraphrase(brief: &Brief) -> Result<Outcome<Narrative>, AgentError> {
     };
     let value = written(told, origin, brief, Author::Rules, &mut diagnostics);
     Ok(Outcome { value, diagnostics })
+}
+
+/// The narrative of a record's own crash, by the rules.
+///
+/// # Errors
+/// Why it cannot be retold as the template, in a sentence.
+pub fn own_narrative(brief: &Brief) -> Result<Narrative, String> {
+    let ways = stagings(&brief.template);
+    if ways.is_empty() {
+        return Err(AgentError::TemplateUnknown { template: brief.template, known: KNOWN }.to_string());
+    }
+    let record = brief.records.first().ok_or_else(|| AgentError::NoRecord.to_string())?;
+    let told = retell(&read(record), brief, ways)?;
+    Ok(written(told, Origin::Own, brief, Author::Rules, &mut Vec::new()))
 }
 
 /// The narrative of an account that somebody else has read.

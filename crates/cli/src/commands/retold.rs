@@ -76,7 +76,7 @@ fn worst_first(cases: &[CaseSummary]) -> Vec<&CaseSummary> {
 /// What led to the failure, or its kind where no rule tells.
 fn what_failed(case: &CaseSummary) -> String {
     let Some(run) = case.tuned.as_ref().filter(|run| run.failed) else { return "-".into() };
-    run.cause.map_or_else(|| run.findings.join(", "), |cause| cause.label().to_owned())
+    run.cause.map_or_else(|| run.findings_in_words(), |cause| cause.label().to_owned())
 }
 
 /// In which run it fails first.

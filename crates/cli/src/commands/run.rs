@@ -165,7 +165,7 @@ fn scenarios(cases: &[CaseSummary]) {
             Cell::new(gap(case.tuned.as_ref())),
             Cell::new(verdict),
             Cell::new(case.triage.as_ref().map_or("", |triage| triage.class.label())),
-            Cell::new(case.tuned.as_ref().map_or_else(String::new, |run| run.findings.join(", "))),
+            Cell::new(case.tuned.as_ref().map_or_else(String::new, RunSummary::findings_in_words)),
         ]);
     }
     println!("{rows}");

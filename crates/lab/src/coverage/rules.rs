@@ -35,7 +35,7 @@ struct Bound<'a> {
 
 impl Bound<'_> {
     fn did(&self, acts: &[Act]) -> bool {
-        acts.iter().any(|&act| self.party.did(act))
+        self.party.did_any(acts)
     }
 
     fn moved(&self, movements: &[Movement]) -> bool {

@@ -66,6 +66,33 @@ pub enum Act {
     Leave,
 }
 
+impl Act {
+    /// Whether it is an act of one that stops or stands in traffic.
+    pub fn stands(self) -> bool {
+        matches!(self, Self::Stop | Self::Hold)
+    }
+
+    /// Whether it is an act of one that stops, stands or parks.
+    pub fn rests(self) -> bool {
+        self.stands() || self == Self::Park
+    }
+
+    /// Whether it is an act of one that slows, stops or stands.
+    pub fn slows(self) -> bool {
+        self.stands() || self == Self::Slow
+    }
+
+    /// Whether it is a turn, be it a U-turn.
+    pub fn turns(self) -> bool {
+        matches!(self, Self::Turn | Self::UTurn)
+    }
+
+    /// Whether it is an act of one that leaves its line along the road, without a turn.
+    pub fn leaves_line(self) -> bool {
+        matches!(self, Self::LaneChange | Self::Drift | Self::Swerve)
+    }
+}
+
 /// Left or right.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
@@ -110,6 +137,13 @@ pub struct ActFact {
     pub manner: Option<Manner>,
     /// Where it stands.
     pub source: Source,
+}
+
+impl ActFact {
+    /// Whether it was done by the time of the contact: it came before that, and was not only begun.
+    pub fn happened(&self) -> bool {
+        !self.after_contact && !self.begun
+    }
 }
 
 /// How fast somebody is told to have driven, where no number is.

@@ -224,6 +224,11 @@ impl Party {
         self.acts.iter().any(|fact| fact.act == act && !fact.after_contact)
     }
 
+    /// Whether it did one of these, at any time up to the contact.
+    pub fn did_any(&self, acts: &[Act]) -> bool {
+        acts.iter().any(|act| self.did(*act))
+    }
+
     /// Its contact zones without their sources.
     pub fn zone_values(&self) -> Vec<ContactZone> {
         self.zones.iter().map(|fact| fact.value).collect()

@@ -198,7 +198,7 @@ pub fn unusable(error: AgentError) -> Result<String, PipelineError> {
         AgentError::Ask(error @ AskError::NotInLedger { .. }) => Err(PipelineError::bad_input(error.to_string())),
         // A server that gives trouble and answers that cannot be used: the rules can mend those.
         error @ (AgentError::Ask(AskError::Trouble(_))
-        | AgentError::NoRecord { .. }
+        | AgentError::NoRecord
         | AgentError::TemplateUnknown { .. }
         | AgentError::Prompt(_)
         | AgentError::FactsDisputed { .. }

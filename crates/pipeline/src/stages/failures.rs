@@ -34,7 +34,6 @@ impl std::fmt::Display for Failure {
 pub(crate) fn keep(stage: Stage, id: &str, result: Result<Files, PipelineError>) -> Result<Files, PipelineError> {
     match result {
         Err(PipelineError::Scenario { why, .. }) => {
-            let why = why.strip_prefix(&format!("{id}: ")).unwrap_or(&why).to_owned();
             let failure = Failure { stage: stage.name().to_owned(), why };
             Ok(vec![(names::failure(stage, id), to_json(&failure))])
         }

@@ -28,8 +28,8 @@ pub(super) fn run(work: &StageWork) -> Result<StageReport, PipelineError> {
         let profile = suite.profile();
         if profile.records.tells == Tells::Templates {
             let Outcome { mut value, mut diagnostics } = input.ingest(profile)?;
-            own::find_untold(&mut value, profile);
-            diagnostics.push(what_is_told(&value));
+            let copies = own::find_untold(&mut value, profile);
+            diagnostics.push(what_is_told(&value, copies));
             return Ok(vec![
                 (names::RECORDS.into(), to_compact_json(&value)),
                 (names::RECORD_REMARKS.into(), to_json(&diagnostics)),
@@ -115,9 +115,8 @@ fn what_is_new(before: &AccountSet, now: &AccountSet) -> Option<Diagnostic> {
     Some(Diagnostic::new(Severity::Note, "records.new", Location::default(), message))
 }
 
-/// How many of the usable records of a suite of templates are told as their own crash.
-fn what_is_told(set: &RecordSet) -> Diagnostic {
-    let copies = set.untold.values().filter(|why| why.ends_with(own::TOLD_BY_ANOTHER)).count();
+/// How many of the usable records of a suite of templates are told as their own crash; `copies` by another record of their incident.
+fn what_is_told(set: &RecordSet, copies: usize) -> Diagnostic {
     let message = format!(
         "{} of {} usable records are told as their own crash, {copies} more by another record of their incident, and {} cannot be",
         set.usable.len() - set.untold.len(),

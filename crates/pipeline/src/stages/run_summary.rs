@@ -36,7 +36,8 @@ pub struct RunSummary {
     /// Whether the ego failed, by the profile's criteria.
     pub failed: bool,
     /// Kinds of findings, each once, failures first.
-    pub findings: Vec<String>,
+    #[serde(with = "labels")]
+    pub findings: Vec<FindingKind>,
     /// Whether a system under test came into the situation of its record; absent where that was not asked of it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub met: Option<bool>,
@@ -67,12 +68,17 @@ impl RunSummary {
             cause: run.cause,
             preventability: run.preventability.as_ref().map(Preventability::bracket),
             failed: run.failed(),
-            findings: run.finding_kinds().iter().map(|kind| kind.label().to_owned()).collect(),
+            findings: run.finding_kinds(),
             met: run.situation_met(),
             faithful: run.situation_met().is_none().then(|| run.faithful()),
             unfaithful: run.verdict.failures().map(told).collect(),
             unchecked: run.verdict.unchecked().map(|check| check.kind.label().to_owned()).collect(),
         }
+    }
+
+    /// The kinds of findings, in words.
+    pub fn findings_in_words(&self) -> String {
+        self.findings.iter().map(|kind| kind.label()).collect::<Vec<_>>().join(", ")
     }
 
     /// Whether it failed by being struck while it stood, seldom by what it drove.
@@ -82,7 +88,7 @@ impl RunSummary {
 
     /// Whether the ego brakes harder than tyres let a vehicle, anywhere.
     pub fn brakes_beyond_tyres(&self) -> bool {
-        self.findings.iter().any(|label| label == FindingKind::BrakingBeyondTyres.label())
+        self.findings.contains(&FindingKind::BrakingBeyondTyres)
     }
 
     /// What findings are ranked by: the greater change of velocity of the two, of a contact with an obstacle, an animal or a
@@ -93,5 +99,25 @@ impl RunSummary {
             (Some([ego, _]), _) => ego,
             (None, _) => 0.0,
         }
+    }
+}
+
+/// Findings by their labels, as the file has them.
+mod labels {
+    use recrash_model::metrics::FindingKind;
+    use serde::de::Error;
+    use serde::{Deserialize, Deserializer, Serializer};
+
+    pub(super) fn serialize<S: Serializer>(kinds: &[FindingKind], to: S) -> Result<S::Ok, S::Error> {
+        to.collect_seq(kinds.iter().map(|kind| kind.label()))
+    }
+
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<FindingKind>, D::Error> {
+        let labels = Vec::<String>::deserialize(from)?;
+        let kind = |label: &String| {
+            let known = FindingKind::ALL.into_iter().find(|kind| kind.label() == label);
+            known.ok_or_else(|| Error::custom(format!("no finding is called \"{label}\"")))
+        };
+        labels.iter().map(kind).collect()
     }
 }

@@ -14,7 +14,7 @@ pub use piece::is_along_a_side;
 pub use places::bound;
 
 use crate::lexicon::{Adjective, Form, Found, Lexicon, Meaning, Occupant, Part, Relation, Sense};
-use crate::token::{Token, TokenKind};
+use crate::token::{Token, TokenKind, word};
 use recrash_model::account::{Compass, Kind, KindGroup, LaneWord, LeftRight};
 use std::cell::Cell;
 
@@ -67,6 +67,16 @@ pub struct Noun {
 }
 
 impl Noun {
+    /// "the vehicle", or somebody in it: which one, the story tells.
+    pub fn is_plain_vehicle(&self) -> bool {
+        self.kind == Some(Kind::Vehicle)
+            && self.article == Article::Definite
+            && self.adjectives.is_empty()
+            && self.names.is_empty()
+            && self.number.is_none()
+            && !self.several
+    }
+
     /// A noun of which nothing is said yet.
     fn unnamed() -> Self {
         Self {
@@ -218,16 +228,6 @@ const PURPOSE_WITHIN: usize = 10;
 const DETERMINERS: [&str; 14] =
     ["the", "this", "that", "these", "those", "its", "their", "his", "her", "our", "a", "an", "one", "any"];
 
-/// "the vehicle": which one, the story tells.
-fn is_the_vehicle(noun: &Noun) -> bool {
-    noun.kind == Some(Kind::Vehicle)
-        && noun.article == Article::Definite
-        && noun.adjectives.is_empty()
-        && noun.names.is_empty()
-        && noun.number.is_none()
-        && !noun.several
-}
-
 /// Whether a noun begins with this word.
 pub fn is_determiner(word: &str) -> bool {
     DETERMINERS.contains(&word)
@@ -295,7 +295,7 @@ struct Chunker<'a> {
 
 impl Chunker<'_> {
     fn text(&self, at: usize) -> &str {
-        self.tokens.get(at).map_or("", |token| token.text.as_str())
+        word(self.tokens, at)
     }
 
     fn next(&self, at: usize, before: &[Placed]) -> (Option<Chunk>, usize) {
@@ -379,7 +379,7 @@ impl Chunker<'_> {
         let (word, street) =
             (self.text(at), matches!(self.text(at + 2), "street" | "road" | "roadway" | "alley" | "alleyway"));
         let length = match self.noun(at + 1) {
-            Some((noun, length)) if (noun.subject || is_the_vehicle(&noun)) && noun.occupant.is_none() => length,
+            Some((noun, length)) if (noun.subject || noun.is_plain_vehicle()) && noun.occupant.is_none() => length,
             _ if street && is_determiner(self.text(at + 1)) => 2,
             _ => return None,
         };

@@ -9,7 +9,7 @@ use recrash_model::account::{Act, ActFact, Fact, LeftRight};
 
 /// "waiting to make an unprotected left turn", "in preparation for a left turn": of who is not told to have begun a turn.
 pub(super) fn turns_next(reading: &Reading<'_>, actor: Actor, acts: &[ActFact]) -> Option<Fact<LeftRight>> {
-    let turns = |fact: &ActFact| matches!(fact.act, Act::Turn | Act::UTurn) && !fact.after_contact;
+    let turns = |fact: &ActFact| fact.act.turns() && !fact.after_contact;
     if acts.iter().any(turns) {
         return None;
     }
@@ -32,16 +32,15 @@ fn goes_straight_instead(reading: &Reading<'_>, frame: &Frame) -> bool {
 /// "was waiting for the left turn arrow": what is told of somebody last before these words is told of who waits.
 fn waits_for_arrow(reading: &Reading<'_>, actor: Actor) -> Option<Fact<LeftRight>> {
     let story = &reading.story;
-    let word = |at: usize| story.tokens.get(at).map_or("", |token| token.text.as_str());
     let until = reading.until().min(story.tokens.len());
     (0..until).find_map(|at| {
-        let side = match word(at) {
+        let side = match story.word(at) {
             "left" => LeftRight::Left,
             "right" => LeftRight::Right,
             _ => return None,
         };
-        let arrow = at + 1 + usize::from(word(at + 1) == "turn");
-        let waits = (at.saturating_sub(4)..at).any(|at| word(at) == "for") && word(arrow) == "arrow";
+        let arrow = at + 1 + usize::from(story.word(at + 1) == "turn");
+        let waits = (at.saturating_sub(4)..at).any(|at| story.word(at) == "for") && story.word(arrow) == "arrow";
         let frame = story.frames.iter().filter(|frame| frame.first <= at).max_by_key(|frame| frame.first)?;
         let sentence = &story.sentences[frame.sentence];
         let own = frame.who == Some(actor) && (sentence.first..sentence.end).contains(&at);

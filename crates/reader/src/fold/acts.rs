@@ -215,7 +215,7 @@ pub(super) fn stood_alongside(reading: &Reading<'_>, actor: Actor, mut acts: Vec
     let at_its_side = |(relation, to): &(Relation, Option<Actor>)| {
         matches!(relation, Relation::Beside | Relation::Left | Relation::Right) && *to == Some(actor)
     };
-    let stands = |frame: &Frame| matches!(frame.act(), Some(Act::Stop | Act::Hold)) && frame.happened();
+    let stands = |frame: &Frame| frame.act().is_some_and(Act::stands) && frame.happened();
     let stood = reading.before(SUBJECT).find(|(_, frame)| stands(frame) && frame.relations.iter().any(at_its_side));
     let Some((number, frame)) = stood.filter(|_| known.kind.is_some_and(Kind::is_vehicle) && !known.several) else {
         return acts;
@@ -278,14 +278,14 @@ pub(super) fn move_away(account: &mut Account) {
 
 /// "completed its left turn", "after it had turned", "had turned".
 fn is_done(reading: &Reading<'_>, frame: &Frame) -> bool {
-    let word = |at: usize| reading.story.tokens.get(at).map_or("", |token| token.text.as_str());
-    let first = word(frame.first);
+    let first = reading.story.word(frame.first);
     // "A van that had made the turn before it".
-    let had = (1..3).any(|back| frame.first.checked_sub(back).is_some_and(|at| word(at) == "had"));
+    let had = (1..3).any(|back| frame.first.checked_sub(back).is_some_and(|at| reading.story.word(at) == "had"));
     // "It had just crossed the intersection".
     let through = || {
-        (frame.first..frame.end)
-            .any(|at| ["cross", "through", "travers", "clear"].iter().any(|stem| word(at).starts_with(stem)))
+        (frame.first..frame.end).any(|at| {
+            ["cross", "through", "travers", "clear"].iter().any(|stem| reading.story.word(at).starts_with(stem))
+        })
     };
     let passed = match frame.act() {
         Some(Act::Turn | Act::UTurn) => true,
@@ -300,16 +300,19 @@ fn is_done(reading: &Reading<'_>, frame: &Frame) -> bool {
 }
 
 fn stands(fact: &ActFact) -> bool {
-    matches!(fact.act, Act::Stop | Act::Hold)
+    fact.act.stands()
 }
 
 /// Whether an act is told behind "after", of the clause with the act of this number before it: "stopped after turning left".
 fn is_behind_after(reading: &Reading<'_>, frame: &Frame, before: usize) -> bool {
-    let word = |at: usize| reading.story.tokens.get(at).map_or("", |token| token.text.as_str());
     let main = &reading.story.frames[before];
-    let after = frame.first.checked_sub(1).is_some_and(|at| word(at) == "after") && word(frame.first).ends_with("ing");
+    let after = frame.first.checked_sub(1).is_some_and(|at| reading.story.word(at) == "after")
+        && reading.story.word(frame.first).ends_with("ing");
     // "stopped, having turned left".
-    let having = frame.first.checked_sub(2).is_some_and(|at| word(at) == "," && word(at + 1) == "having");
+    let having = frame
+        .first
+        .checked_sub(2)
+        .is_some_and(|at| reading.story.word(at) == "," && reading.story.word(at + 1) == "having");
     let behind = after || having;
     behind && main.sentence == frame.sentence && main.joint != Some(Joint::After)
 }

@@ -43,16 +43,12 @@ pub(super) fn astride(reading: &Reading<'_>, actor: Actor) -> Option<Fact<Astrid
         let line = line(reading, (at, frame), act, (first.0, second.map(|named| named.0)))?;
         // "moved partly into the oncoming lane": it is so when they touch.
         let goes = matches!(
-            word(reading, at.wrapping_sub(1)),
+            reading.story.word(at.wrapping_sub(1)),
             "moved" | "shifted" | "edged" | "nudged" | "pulled" | "steered"
         );
         let when = if goes && !stands(act) { AstrideWhen::Contact } else { when(act, was_so(reading, at)) };
         Some(reading.told(Astride { line, side: side(line, first.0, second), when }, at, end))
     })
-}
-
-fn word<'a>(reading: &'a Reading<'_>, at: usize) -> &'a str {
-    reading.story.tokens.get(at).map_or("", |token| token.text.as_str())
 }
 
 fn is_partly(word: &str) -> bool {
@@ -66,9 +62,8 @@ fn leads_in(word: &str) -> bool {
 /// "partially in the left lane and partially in the bike lane", "straddling two lanes", "on the double yellow line", "encroaching into the
 /// lane": the places that are named from this token on.
 fn partly(reading: &Reading<'_>, at: usize) -> Option<(Named, Option<Named>)> {
-    let word = |at: usize| word(reading, at);
-    if word(at).starts_with("straddl") {
-        let both = (at + 1..at + 4).any(|at| matches!(word(at), "two" | "both" | "lanes"));
+    if reading.story.word(at).starts_with("straddl") {
+        let both = (at + 1..at + 4).any(|at| matches!(reading.story.word(at), "two" | "both" | "lanes"));
         let lane = Region::Lane { side: None, other: both };
         let named = region(reading, at + 1).unwrap_or((lane, at + 1));
         let plain = matches!(named.0, Region::Lane { .. } | Region::Way(_));
@@ -77,24 +72,25 @@ fn partly(reading: &Reading<'_>, at: usize) -> Option<(Named, Option<Named>)> {
     if let Some(end) = in_middle(reading, at) {
         return Some(((Region::Over, end), None));
     }
-    let reaches = ["encroach", "protrud", "intrud", "jut"].iter().any(|stem| word(at).starts_with(stem));
-    let reaches = reaches && (word(at).ends_with("ing") || is_partly(word(at.wrapping_sub(1))));
-    if reaches && leads_in(word(at + 1)) {
+    let reaches = ["encroach", "protrud", "intrud", "jut"].iter().any(|stem| reading.story.word(at).starts_with(stem));
+    let reaches =
+        reaches && (reading.story.word(at).ends_with("ing") || is_partly(reading.story.word(at.wrapping_sub(1))));
+    if reaches && leads_in(reading.story.word(at + 1)) {
         return Some((region(reading, at + 2)?, None));
     }
-    let line = word(at) == "on" && (at + 1..at + 4).any(|at| is_yellow_line(reading, at));
-    if line && !is_partly(word(at.wrapping_sub(1))) {
+    let line = reading.story.word(at) == "on" && (at + 1..at + 4).any(|at| is_yellow_line(reading, at));
+    if line && !is_partly(reading.story.word(at.wrapping_sub(1))) {
         return Some((region(reading, at + 1).filter(|(region, _)| *region == Region::Over)?, None));
     }
     // "partially stopping within both lanes".
-    let to = at + 1 + usize::from(word(at + 1).starts_with("stop"));
-    if !is_partly(word(at)) || !leads_in(word(to)) {
+    let to = at + 1 + usize::from(reading.story.word(at + 1).starts_with("stop"));
+    if !is_partly(reading.story.word(at)) || !leads_in(reading.story.word(to)) {
         return None;
     }
     let first = region(reading, to + 1)?;
     // "was halfway across the road": on its way to the other side.
-    let road = (to + 1..first.1).any(|at| matches!(word(at), "road" | "roadway" | "street"));
-    if word(to) == "across" && road {
+    let road = (to + 1..first.1).any(|at| matches!(reading.story.word(at), "road" | "roadway" | "street"));
+    if reading.story.word(to) == "across" && road {
         return None;
     }
     Some((first, and_partly(reading, first.1)))
@@ -102,7 +98,7 @@ fn partly(reading: &Reading<'_>, at: usize) -> Option<(Named, Option<Named>)> {
 
 /// "down the middle of the aisle", "in the center of the narrow roadway": who drives so is over the line between the directions.
 fn in_middle(reading: &Reading<'_>, at: usize) -> Option<usize> {
-    let word = |at: usize| word(reading, at);
+    let word = |at: usize| reading.story.word(at);
     let leads = matches!(word(at), "in" | "down" | "up" | "along") && word(at + 1) == "the" && word(at + 3) == "of";
     let middle = leads && matches!(word(at + 2), "middle" | "center") && matches!(word(at + 4), "the" | "a" | "an");
     let road = |word: &str| matches!(word, "road" | "roadway" | "street" | "aisle" | "alley" | "driveway");
@@ -113,13 +109,12 @@ fn in_middle(reading: &Reading<'_>, at: usize) -> Option<usize> {
 
 /// "and partially in the parking lane", "and the bike lane", behind the first of two places.
 fn and_partly(reading: &Reading<'_>, at: usize) -> Option<Named> {
-    let word = |at: usize| word(reading, at);
-    let within = (at..at + AND_WITHIN).take_while(|&at| !matches!(word(at), "," | "."));
-    let from = within.into_iter().find(|&at| word(at) == "and")? + 1;
-    let again = is_partly(word(from)) || leads_in(word(from));
-    let from = from + usize::from(is_partly(word(from)));
-    let from = if leads_in(word(from)) { from + 1 } else { from };
-    let article = matches!(word(from), "the" | "a" | "its") || leads_in(word(from - 1));
+    let within = (at..at + AND_WITHIN).take_while(|&at| !matches!(reading.story.word(at), "," | "."));
+    let from = within.into_iter().find(|&at| reading.story.word(at) == "and")? + 1;
+    let again = is_partly(reading.story.word(from)) || leads_in(reading.story.word(from));
+    let from = from + usize::from(is_partly(reading.story.word(from)));
+    let from = if leads_in(reading.story.word(from)) { from + 1 } else { from };
+    let article = matches!(reading.story.word(from), "the" | "a" | "its") || leads_in(reading.story.word(from - 1));
     // "partly in the right lane and the left lane was blocked": another clause.
     let named = region(reading, from).filter(|_| article)?;
     (again || !is_verb(reading, named.1)).then_some(named)
@@ -127,17 +122,17 @@ fn and_partly(reading: &Reading<'_>, at: usize) -> Option<Named> {
 
 /// Whether a finite verb stands at this token.
 fn is_verb(reading: &Reading<'_>, at: usize) -> bool {
-    let be = matches!(word(reading, at), "was" | "were" | "is" | "are" | "had" | "has" | "became" | "remained");
+    let be = matches!(reading.story.word(at), "was" | "were" | "is" | "are" | "had" | "has" | "became" | "remained");
     let finite = |frame: &Frame| frame.first == at && matches!(frame.form, Form::Past | Form::Present);
     be || reading.story.frames.iter().any(finite)
 }
 
 /// Whether this word is the yellow of a line of the road: "the yellow center line", and not "a yellow light in the lane".
 fn is_yellow_line(reading: &Reading<'_>, at: usize) -> bool {
-    let word = |at: usize| word(reading, at);
-    let line = |at: usize| matches!(word(at), "line" | "lines" | "centerline" | "divider");
-    let between = matches!(word(at + 1), "center" | "dividing" | "lane");
-    word(at) == "yellow" && (line(at + 1) || between && line(at + 2) || at > 0 && word(at - 1) == "double")
+    let line = |at: usize| matches!(reading.story.word(at), "line" | "lines" | "centerline" | "divider");
+    let between = matches!(reading.story.word(at + 1), "center" | "dividing" | "lane");
+    reading.story.word(at) == "yellow"
+        && (line(at + 1) || between && line(at + 2) || at > 0 && reading.story.word(at - 1) == "double")
 }
 
 /// The name of a road may stand between a lane and "and": "in the northbound lane of Elm Street and". [tokens]
@@ -145,36 +140,41 @@ const AND_WITHIN: usize = 5;
 
 /// The place that is named from this token on, up to its noun.
 fn region(reading: &Reading<'_>, from: usize) -> Option<Named> {
-    let word = |at: usize| word(reading, at);
-    let of_side = |at: usize| word(at) == "of" && word(at - 1) == "side";
+    let of_side = |at: usize| reading.story.word(at) == "of" && reading.story.word(at - 1) == "side";
     let ends = |at: &usize| {
-        let clause = matches!(word(*at), "" | "." | "," | "and" | "when" | "while" | "as" | "with" | "for" | "to");
-        let place = matches!(word(*at), "in" | "of" | "from" | "at" | "light" | "signal" | "arrow");
+        let clause =
+            matches!(reading.story.word(*at), "" | "." | "," | "and" | "when" | "while" | "as" | "with" | "for" | "to");
+        let place = matches!(reading.story.word(*at), "in" | "of" | "from" | "at" | "light" | "signal" | "arrow");
         clause || place && !of_side(*at)
     };
     let mut end = from;
     let noun = loop {
         // "the second to the right lane", "the second from the right lane".
-        let counted =
-            matches!(word(end), "to" | "from") && word(end + 1) == "the" && word(end.wrapping_sub(1)) == "second";
+        let counted = matches!(reading.story.word(end), "to" | "from")
+            && reading.story.word(end + 1) == "the"
+            && reading.story.word(end.wrapping_sub(1)) == "second";
         if end == from + NAME_WITHIN || ends(&end) && !counted && !is_of_zone(reading, end) {
             return compass_road(reading, from);
         }
-        let noun = word(end);
+        let noun = reading.story.word(end);
         let lane = matches!(noun, "lane" | "lanes" | "line" | "lines" | "divider" | "roadway" | "road" | "street");
         let lane = lane || noun == "centerline";
-        if lane || is_beside(noun) && word(end + 1) != "lane" && !is_of_zone(reading, end + 1) {
+        if lane || is_beside(noun) && reading.story.word(end + 1) != "lane" && !is_of_zone(reading, end + 1) {
             break end;
         }
         end += 1;
     };
-    let names = |any: &[&str]| (from..=noun).any(|at| any.contains(&word(at)));
-    let end = noun + 1 + usize::from(word(noun) == "lane" && matches!(word(noun + 1), "line" | "lines" | "divider"));
-    let beside = (from..=noun).any(|at| is_beside(word(at)));
+    let names = |any: &[&str]| (from..=noun).any(|at| any.contains(&reading.story.word(at)));
+    let end = noun
+        + 1
+        + usize::from(
+            reading.story.word(noun) == "lane" && matches!(reading.story.word(noun + 1), "line" | "lines" | "divider"),
+        );
+    let beside = (from..=noun).any(|at| is_beside(reading.story.word(at)));
     let over = names(&["oncoming", "opposing", "opposite", "centerline", "divider"])
         || (from..=noun).any(|at| is_yellow_line(reading, at))
         || names(&["center"]) && names(&["two", "turn", "line", "lines"]);
-    let way = (from..noun).find_map(|at| bound(word(at)));
+    let way = (from..noun).find_map(|at| bound(reading.story.word(at)));
     let side = match (names(&["left"]), names(&["right"])) {
         (true, false) => Some(LeftRight::Left),
         (false, true) => Some(LeftRight::Right),
@@ -193,7 +193,7 @@ fn region(reading: &Reading<'_>, from: usize) -> Option<Named> {
 
 /// "northbound Elm Street", of which the name is withheld: the road that leads that way.
 fn compass_road(reading: &Reading<'_>, from: usize) -> Option<Named> {
-    bound(word(reading, from)).map(|way| (Region::Way(way), from + 1))
+    bound(reading.story.word(from)).map(|way| (Region::Way(way), from + 1))
 }
 
 /// What lies beside the lanes of a street, and along it.
@@ -216,7 +216,7 @@ fn is_beside(word: &str) -> bool {
 
 /// "the pick-up, drop-off zone": a comma within the name of a zone.
 fn is_of_zone(reading: &Reading<'_>, at: usize) -> bool {
-    (at + 1..at + 4).any(|at| word(reading, at) == "zone") && matches!(word(reading, at), "," | "and")
+    (at + 1..at + 4).any(|at| reading.story.word(at) == "zone") && matches!(reading.story.word(at), "," | "and")
 }
 
 /// Of whom the words at a token are told: who does what is told last before them in the sentence, else first behind them.
@@ -240,16 +240,17 @@ fn is_of_another(reading: &Reading<'_>, frame: &Frame, at: usize) -> bool {
     let names = |at: usize| {
         let found = Lexicon::get().longest(tokens, at, somebody);
         // "with the rear of the vehicle partly in the lane": its own.
-        let own = matches!((word(reading, at.wrapping_sub(1)), word(reading, at)), ("the", "vehicle"));
-        found.is_some_and(|found| !own && !word(reading, at + found.length).starts_with("lane"))
+        let own = matches!((reading.story.word(at.wrapping_sub(1)), reading.story.word(at)), ("the", "vehicle"));
+        found.is_some_and(|found| !own && !reading.story.word(at + found.length).starts_with("lane"))
     };
-    let breath = (frame.end..at).rev().take_while(|&at| !matches!(word(reading, at), "," | "and" | "while" | "but"));
+    let breath =
+        (frame.end..at).rev().take_while(|&at| !matches!(reading.story.word(at), "," | "and" | "while" | "but"));
     breath.into_iter().any(names)
 }
 
 /// "and its rear was partially in the lane".
 fn was_so(reading: &Reading<'_>, at: usize) -> bool {
-    matches!(word(reading, at.wrapping_sub(1)), "was" | "were")
+    matches!(reading.story.word(at.wrapping_sub(1)), "was" | "were")
 }
 
 /// What somebody did last before these words; nothing of what takes it across the road, or of whose front alone is told in a lane, which is one
@@ -265,8 +266,8 @@ fn act_of(reading: &Reading<'_>, (at, end): (usize, usize), actor: Actor) -> Opt
     let last = stood.unwrap_or(last);
     let across =
         |word: &str| word.starts_with("perpendicular") || matches!(word, "sideways" | "driveway" | "intersection");
-    let front = (last.first..at).any(|at| word(reading, at) == "front" && word(reading, at + 1) == "of");
-    let across = front || (last.first..end).any(|at| across(word(reading, at)));
+    let front = (last.first..at).any(|at| reading.story.word(at) == "front" && reading.story.word(at + 1) == "of");
+    let across = front || (last.first..end).any(|at| across(reading.story.word(at)));
     last.act().filter(|act| ALONG.contains(act) && !across)
 }
 
@@ -304,7 +305,7 @@ fn line(
 /// Whether the kerb is named before these words in their sentence.
 fn at_kerb(reading: &Reading<'_>, at: usize) -> bool {
     let sentence = reading.story.sentences.iter().find(|sentence| (sentence.first..sentence.end).contains(&at));
-    sentence.is_some_and(|sentence| (sentence.first..at).any(|at| word(reading, at) == "curb"))
+    sentence.is_some_and(|sentence| (sentence.first..at).any(|at| reading.story.word(at) == "curb"))
 }
 
 /// Whether somebody was on its way to another lane.

@@ -53,7 +53,7 @@ fn is_before_it(story: &Story, number: usize) -> bool {
         return false;
     }
     let waits = |other: &Frame| {
-        let stops = matches!(other.act(), Some(Act::Stop | Act::Slow | Act::Hold)) || other.sense == Sense::Yield;
+        let stops = other.act().is_some_and(Act::slows) || other.sense == Sense::Yield;
         stops && other.sentence == frame.sentence && other.who == frame.who && other.joint != frame.joint
     };
     let stops = frame.act() == Some(Act::Stop);

@@ -4,7 +4,7 @@ use super::Reading;
 use super::undone::not_done;
 use crate::frame::Frame;
 use crate::lexicon::{Form, Lexicon, Meaning, Relation, Sense};
-use crate::token::Token;
+use crate::token::{Token, word};
 use crate::world::{Actor, SUBJECT};
 use recrash_model::account::{Act, Control, ControlDevice, Fact, Obeyed, SignalState, Source};
 
@@ -127,7 +127,7 @@ impl Clause<'_> {
         if self.ran == Some(breaks) {
             return Some(Obeyed::No);
         }
-        let stops = matches!(self.ran, Some(Act::Stop | Act::Hold)) && state != Some(SignalState::Green);
+        let stops = self.ran.is_some_and(Act::stands) && state != Some(SignalState::Green);
         // "was slowing for a red light", and did not go on into the junction.
         let slows = || {
             self.ran == Some(Act::Slow)
@@ -155,16 +155,15 @@ impl Clause<'_> {
 /// "a truck with a broken stop light", "the stop light of a van": a lamp of that.
 pub(super) fn is_lamp(reading: &Reading<'_>, (at, length): (usize, usize)) -> bool {
     let tokens = &reading.story.tokens;
-    let word = |at: usize| tokens.get(at).map_or("", |token| token.text.as_str());
     let vehicle = |at: usize| {
         let kind = |meaning| matches!(meaning, Meaning::Kind(kind) if kind.is_vehicle());
         Lexicon::get().longest(tokens, at, kind).is_some()
     };
-    let article = usize::from(matches!(word(at + length + 1), "a" | "an" | "the"));
-    let of = word(at + length) == "of" && vehicle(at + length + 1 + article);
-    let with = (1..5).any(|back| back < at && word(at - back) == "with" && vehicle(at - back - 1));
-    let broken = at > 0 && matches!(word(at - 1), "broken" | "faulty" | "defective");
-    word(at) == "stop" && matches!(word(at + 1), "light" | "signal") && (of || with || broken)
+    let article = usize::from(matches!(word(tokens, at + length + 1), "a" | "an" | "the"));
+    let of = word(tokens, at + length) == "of" && vehicle(at + length + 1 + article);
+    let with = (1..5).any(|back| back < at && word(tokens, at - back) == "with" && vehicle(at - back - 1));
+    let broken = at > 0 && matches!(word(tokens, at - 1), "broken" | "faulty" | "defective");
+    word(tokens, at) == "stop" && matches!(word(tokens, at + 1), "light" | "signal") && (of || with || broken)
 }
 
 /// "where only the side street has" stop signs: none on the way of who has the right of way there. Of the words before a sign.
@@ -192,7 +191,7 @@ fn goes_in(reading: &Reading<'_>, actor: Actor, number: usize) -> bool {
 pub(super) fn in_its_queue(reading: &Reading<'_>, number: usize, end: usize) -> usize {
     let story = &reading.story;
     let frame = &story.frames[number];
-    let stands = matches!(frame.act(), Some(Act::Hold | Act::Stop)) && frame.happened();
+    let stands = frame.act().is_some_and(Act::stands) && frame.happened();
     let words = &story.tokens[frame.first..end.max(frame.first)];
     let line = words.iter().any(|token| matches!(token.text.as_str(), "line" | "queue" | "row" | "column"));
     let behind = frame.relations.iter().any(|(relation, to)| *relation == Relation::Behind && to.is_some());
@@ -201,7 +200,7 @@ pub(super) fn in_its_queue(reading: &Reading<'_>, number: usize, end: usize) -> 
     }
     let next = story.frames[number + 1..].iter().find(|next| next.first >= end && next.sentence == frame.sentence);
     let Some(queue) = next.filter(|next| next.who.is_some_and(|who| who != SUBJECT)) else { return end };
-    let waits = matches!(queue.act(), Some(Act::Hold | Act::Stop)) || story.tokens[queue.first].text == "held";
+    let waits = queue.act().is_some_and(Act::stands) || story.tokens[queue.first].text == "held";
     let sentence = story.sentences[frame.sentence].end;
     let goes_on =
         |other: &&Frame| other.first > queue.first && other.sentence == frame.sentence && other.who != queue.who;
@@ -218,7 +217,7 @@ fn of_the_contact(reading: &Reading<'_>, number: usize, end: usize) -> usize {
 /// "The AV had a green light", "With a green light, it was driving": told in no clause of what it does.
 fn had_a_light(reading: &Reading<'_>, all: &mut Vec<Fact<Control>>) {
     let story = &reading.story;
-    let word = |at: usize| story.tokens.get(at).map_or("", |token| token.text.as_str());
+    let word = |at: usize| story.word(at);
     let until = reading.until().min(story.tokens.len());
     for at in 0..until {
         let named_here =
@@ -240,7 +239,7 @@ fn had_a_light(reading: &Reading<'_>, all: &mut Vec<Fact<Control>>) {
 /// "The stationary AV was in autonomous mode at the stop sign": told with no verb but "was", behind what is told of it.
 fn was_at_a_sign(reading: &Reading<'_>, all: &mut Vec<Fact<Control>>) {
     let story = &reading.story;
-    let word = |at: usize| story.tokens.get(at).map_or("", |token| token.text.as_str());
+    let word = |at: usize| story.word(at);
     for at in 1..reading.until().min(story.tokens.len()) {
         let words: Vec<&str> = (at..at + 4).map(word).collect();
         let Some((device, state, length)) = named(&words) else { continue };
@@ -255,7 +254,7 @@ fn was_at_a_sign(reading: &Reading<'_>, all: &mut Vec<Fact<Control>>) {
         let covered =
             before().any(|(number, frame)| frame.who.is_some() && reading.window(number).1 > at && !frame.aside);
         let last = before().next_back().map(|(_, frame)| frame);
-        let stood = |frame: &Frame| matches!(frame.act(), Some(Act::Hold | Act::Stop)) && frame.happened();
+        let stood = |frame: &Frame| frame.act().is_some_and(Act::stands) && frame.happened();
         let own = last.filter(|frame| frame.who == Some(SUBJECT) && stood(frame));
         // "stopped behind a van which was at the stop sign", "stopped and a van was at the sign": that was.
         let other = |at: usize| {
@@ -272,7 +271,7 @@ fn was_at_a_sign(reading: &Reading<'_>, all: &mut Vec<Fact<Control>>) {
 /// "Traffic had queued at a red light, and the AV was standing in that line": the light of the line is its own.
 fn of_that_queue(reading: &Reading<'_>, all: &mut Vec<Fact<Control>>, turned: Option<SignalState>) {
     let tokens = &reading.story.tokens;
-    let word = |at: usize| tokens.get(at).map_or("", |token| token.text.as_str());
+    let word = |at: usize| word(tokens, at);
     let line = |at: &usize| {
         matches!(word(*at), "that" | "this" | "the")
             && matches!(word(at + 1), "queue" | "line")
@@ -299,8 +298,8 @@ fn of_that_queue(reading: &Reading<'_>, all: &mut Vec<Fact<Control>>, turned: Op
 /// "Cars ahead of it were stopped at a red light, so it stopped too": the light of those ahead is its own.
 fn of_those_ahead(reading: &Reading<'_>, all: &mut Vec<Fact<Control>>, turned: Option<SignalState>) {
     let story = &reading.story;
-    let word = |at: usize| story.tokens.get(at).map_or("", |token| token.text.as_str());
-    let stands = |frame: &Frame| matches!(frame.act(), Some(Act::Hold | Act::Stop)) && frame.happened();
+    let word = |at: usize| story.word(at);
+    let stands = |frame: &Frame| frame.act().is_some_and(Act::stands) && frame.happened();
     let ahead = |who: Actor| {
         who != SUBJECT && story.world.actors[who].relations.iter().any(|(relation, _)| *relation == Relation::Ahead)
     };
@@ -352,7 +351,6 @@ fn of_those_ahead(reading: &Reading<'_>, all: &mut Vec<Fact<Control>>, turned: O
 /// "stood at a red light. Once the light had changed, it moved off": it turned green, though nobody tells to what.
 fn light_changed(reading: &Reading<'_>, all: &mut [Fact<Control>]) {
     let tokens = &reading.story.tokens;
-    let word = |at: usize| tokens.get(at).map_or("", |token| token.text.as_str());
     let red = |control: &&mut Fact<Control>| {
         control.value.device == ControlDevice::Signal && control.value.state == Some(SignalState::Red)
     };
@@ -361,10 +359,10 @@ fn light_changed(reading: &Reading<'_>, all: &mut [Fact<Control>]) {
         matches!(frame.act(), Some(Act::SetOff | Act::Enter | Act::Turn | Act::Follow)) && frame.happened()
     };
     let changes = |at: usize| {
-        let had = usize::from(matches!(word(at + 1), "had" | "then"));
-        let colour = matches!(word(at + had + 2), "to" | "from" | "red" | "yellow" | "green");
-        matches!(word(at), "light" | "signal" | "lights" | "signals")
-            && matches!(word(at + had + 1), "changed" | "changes" | "cycled" | "switched")
+        let had = usize::from(matches!(word(tokens, at + 1), "had" | "then"));
+        let colour = matches!(word(tokens, at + had + 2), "to" | "from" | "red" | "yellow" | "green");
+        matches!(word(tokens, at), "light" | "signal" | "lights" | "signals")
+            && matches!(word(tokens, at + had + 1), "changed" | "changes" | "cycled" | "switched")
             && !colour
     };
     let red_at = match &control.source {
@@ -419,7 +417,7 @@ pub(super) fn shown(
     end: usize,
 ) -> Option<(ControlDevice, Option<SignalState>, usize)> {
     let tokens = &reading.story.tokens;
-    let word = |at: usize| tokens.get(at).map_or("", |token| token.text.as_str());
+    let word = |at: usize| word(tokens, at);
     let before = at.checked_sub(1).map_or("", word);
     if !matches!(word(at), "light" | "signal" | "lights" | "signals") || OTHER_LIGHTS.contains(&before) {
         return None;
@@ -579,9 +577,8 @@ fn is_of_others(reading: &Reading<'_>, (first, told): (usize, usize)) -> bool {
 /// "The signal for traffic in the next lanes turned green, and the arrow of its own stayed red": not its own.
 fn is_of_other_lanes(reading: &Reading<'_>, (first, told): (usize, usize), signal: usize) -> bool {
     let tokens = &reading.story.tokens;
-    let word = |at: usize| tokens[at].text.as_str();
-    let for_traffic =
-        word(signal + 1) == "for" && (signal + 2..told).take(2).any(|at| matches!(word(at), "traffic" | "vehicles"));
+    let for_traffic = word(tokens, signal + 1) == "for"
+        && (signal + 2..told).take(2).any(|at| matches!(word(tokens, at), "traffic" | "vehicles"));
     let until = tokens.len().min(reading.until());
     let stays_red = tokens[first.min(until)..until]
         .windows(2)

@@ -11,7 +11,7 @@ use super::undone::not_done;
 use crate::chunk::{Joint, Spot};
 use crate::frame::Frame;
 use crate::lexicon::{Form, Progress, Relation, Sense};
-use crate::token::Token;
+use crate::token::{Token, word};
 use crate::world::{Actor, SUBJECT};
 use recrash_model::account::{Act, KindGroup, Manner};
 use recrash_model::template::Movement;
@@ -62,7 +62,7 @@ fn tells_no_act(reading: &Reading<'_>, number: usize, frame: &Frame, act: Act) -
         Act::Fall => frame.who == Some(SUBJECT) && frame.with.is_some() && reading.doer(frame) == Some(SUBJECT),
         Act::Slow => {
             let moved = || last_act(reading, number, frame, |_| true);
-            avoids(reading, frame) && matches!(moved(), Some(Act::Hold | Act::Stop))
+            avoids(reading, frame) && moved().is_some_and(Act::stands)
         }
         _ => false,
     };
@@ -199,10 +199,11 @@ pub(super) fn gains_speed(reading: &Reading<'_>, number: usize, frame: &Frame) -
 
 /// Whether who drove along began to proceed "straight" or "through", and nothing told since had made it stand.
 pub(super) fn begins_to_go_on(reading: &Reading<'_>, number: usize, frame: &Frame) -> bool {
-    let word = |at: usize| reading.story.tokens.get(at).map_or("", |token| token.text.as_str());
-    let goes =
-        (frame.first..frame.end).any(|at| ["proceed", "continu", "driv"].iter().any(|stem| word(at).starts_with(stem)));
-    let on = goes && (word(frame.end - 1) == "straight" || matches!(word(frame.end), "straight" | "through"));
+    let goes = (frame.first..frame.end)
+        .any(|at| ["proceed", "continu", "driv"].iter().any(|stem| reading.story.word(at).starts_with(stem)));
+    let on = goes
+        && (reading.story.word(frame.end - 1) == "straight"
+            || matches!(reading.story.word(frame.end), "straight" | "through"));
     let waits = |(other, before): (usize, &Frame)| other < number && before.sense == Sense::Yield && before.happened();
     let waited = reading.before(SUBJECT).any(waits);
     // Of others less is told: they may have stood.
@@ -316,7 +317,7 @@ pub(super) fn in_headline(reading: &Reading<'_>, frame: &Frame) -> bool {
 /// tells of something else that it did.
 pub(super) fn names_mode(reading: &Reading<'_>, number: usize, frame: &Frame) -> bool {
     let tokens = &reading.story.tokens;
-    let word = |at: usize| tokens.get(at).map_or("", |token| token.text.as_str());
+    let word = |at: usize| word(tokens, at);
     let drives = matches!(word(frame.first), "operating" | "operated" | "driven" | "driving");
     let clause = (frame.first..frame.first + MODE_WITHIN).map(word).take_while(|word| !matches!(*word, "," | "."));
     let mode = clause.into_iter().any(|word| word == "mode");
@@ -325,7 +326,7 @@ pub(super) fn names_mode(reading: &Reading<'_>, number: usize, frame: &Frame) ->
         other < number
             && before.sentence == frame.sentence
             && before.happened()
-            && matches!(before.act(), Some(Act::Stop | Act::Hold))
+            && before.act().is_some_and(Act::stands)
     };
     apposed && frame.who.is_some_and(|who| reading.before(who).any(stands))
 }
@@ -342,7 +343,7 @@ fn goes_on_from_a_stand(reading: &Reading<'_>, number: usize, frame: &Frame, wor
     let forward = words.split([',', '.', ';']).next().is_some_and(|clause| clause.contains("forward"));
     let stood = |act: Option<Act>| match act {
         Some(Act::Reverse) => forward,
-        act => matches!(act, Some(Act::Hold | Act::Stop)),
+        act => act.is_some_and(Act::stands),
     };
     // "The stationary AV was in autonomous mode. It moved forward".
     let last = last_act(reading, number, frame, |frame| !frame.aside);
@@ -413,7 +414,7 @@ fn goes_at_green(reading: &Reading<'_>, frame: &Frame, words: &str) -> bool {
     let own = reading.story.world.actors[SUBJECT].heading.map(|(heading, ..)| heading);
     let other_way = known.heading.is_some_and(|(heading, ..)| own.is_some_and(|own| own != heading));
     let comes = known.relations.iter().any(|(relation, _)| matches!(relation, Relation::Behind | Relation::Opposite));
-    let stands = |other: &Frame| matches!(other.act(), Some(Act::Hold | Act::Stop));
+    let stands = |other: &Frame| other.act().is_some_and(Act::stands);
     let waits = |other: &Frame| other.who == Some(SUBJECT) && other.sentence == frame.sentence && stands(other);
     // "It came to a stop beside a van. When the light turned green, ...": it stood already.
     let own = reading.before(SUBJECT).filter(|(_, other)| other.first < frame.first && other.happened());

@@ -4,7 +4,7 @@ use super::Reading;
 use super::contact::tells_harm;
 use crate::frame::{Frame, Story};
 use crate::lexicon::{Lexicon, Occupant, Sense};
-use crate::token::{Sentence, Token};
+use crate::token::{Sentence, Token, is_crash_noun};
 use crate::world::SUBJECT;
 use recrash_model::account::{Act, Driver, Fact};
 use recrash_model::record::{Coded, Engagement};
@@ -120,8 +120,7 @@ fn is_told_again(reading: &Reading<'_>, number: usize) -> bool {
 
 /// Whether a sentence tells of the moment of the crash: "At impact", "by the time of the contact".
 fn at_impact(words: &[Token]) -> bool {
-    let crash =
-        |token: &Token| matches!(token.text.as_str(), "impact" | "collision" | "contact" | "incident" | "crash");
+    let crash = |token: &Token| is_crash_noun(&token.text);
     let begins = words.first().is_some_and(|token| matches!(token.text.as_str(), "at" | "by"));
     let moment = |run: &[Token]| {
         matches!(run[0].text.as_str(), "at" | "by")
@@ -160,12 +159,10 @@ fn had_done(reading: &Reading<'_>, frame: &Frame) -> bool {
     let words: Vec<&str> =
         reading.story.tokens[frame.first..sentence.end].iter().map(|token| token.text.as_str()).collect();
     // "It disengaged before the impact", told behind it.
-    let until = words.iter().position(|word| matches!(*word, "before" | "prior")).is_some_and(|at| {
-        words[at..]
-            .iter()
-            .take(5)
-            .any(|word| matches!(*word, "impact" | "contact" | "collision" | "crash" | "incident"))
-    });
+    let until = words
+        .iter()
+        .position(|word| matches!(*word, "before" | "prior"))
+        .is_some_and(|at| words[at..].iter().take(5).any(|word| is_crash_noun(word)));
     until || contact == Some(frame.sentence) && before == Some("had")
 }
 

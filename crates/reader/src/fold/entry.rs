@@ -5,6 +5,7 @@ use super::Reading;
 use super::across::begins;
 use crate::chunk::is_determiner;
 use crate::frame::Frame;
+use crate::token::word;
 use recrash_model::account::{Act, ActFact, Source};
 
 /// So many words stand between a verb and the intersection into which it leads, at most: "proceeded a short distance forward into the". [tokens]
@@ -85,7 +86,7 @@ pub(super) fn beside(reading: &Reading<'_>, frame: &Frame, fact: &ActFact) -> Op
     if let Some((first, end)) = already_inside(reading, frame) {
         return Some(entry(first, end, true, false));
     }
-    let stands = matches!(fact.act, Act::Stop | Act::Hold);
+    let stands = fact.act.stands();
     let moves = matches!(fact.act, Act::Follow | Act::SetOff | Act::Accelerate | Act::Slow);
     let end = behind_verb(reading, frame, stands).filter(|_| stands || moves)?;
     Some(entry(frame.first, end, stands, moves && (fact.begun || stays_begun(reading, frame))))
@@ -94,13 +95,13 @@ pub(super) fn beside(reading: &Reading<'_>, frame: &Frame, fact: &ActFact) -> Op
 /// "traveling eastbound on Oak Street through the intersection", "stopped partway into the intersection": the token behind it.
 fn behind_verb(reading: &Reading<'_>, frame: &Frame, stands: bool) -> Option<usize> {
     let tokens = &reading.story.tokens;
-    let word = |at: usize| tokens[at].text.as_str();
     let mut end = reading.story.sentences[frame.sentence].end.min(frame.end + BETWEEN);
     // The next verb is of another clause.
     let next = reading.story.frames.iter().map(|other| other.first).filter(|first| *first >= frame.end).min();
     end = end.min(next.unwrap_or(end));
-    let into = (frame.first + 1..end).take_while(|&at| !ENDS.contains(&word(at))).find(|&at| {
-        matches!(word(at), "into" | "through" | "across") && (!stands || HOW_FAR.contains(&word(at - 1)))
+    let into = (frame.first + 1..end).take_while(|&at| !ENDS.contains(&word(tokens, at))).find(|&at| {
+        matches!(word(tokens, at), "into" | "through" | "across")
+            && (!stands || HOW_FAR.contains(&word(tokens, at - 1)))
     })?;
     intersection(reading, into + 1, frame.sentence, &OF_LIGHT)
 }
@@ -108,15 +109,14 @@ fn behind_verb(reading: &Reading<'_>, frame: &Frame, stands: bool) -> Option<usi
 /// "(halfway) through the intersection", "while in the intersection", at the head of the sentence of which this is the first verb.
 fn already_inside(reading: &Reading<'_>, frame: &Frame) -> Option<(usize, usize)> {
     let tokens = &reading.story.tokens;
-    let word = |at: usize| tokens[at].text.as_str();
     let first = reading.story.sentences[frame.sentence].first;
     let own = |other: &Frame| other.sentence == frame.sentence && other.first < frame.first;
     if reading.story.frames.iter().any(own) {
         return None;
     }
-    let at = (first..frame.first).find(|&at| match word(at) {
-        "into" | "through" => at > first && HOW_FAR.contains(&word(at - 1)),
-        "in" | "inside" | "within" => at > first && matches!(word(at - 1), "while" | "still" | "already"),
+    let at = (first..frame.first).find(|&at| match word(tokens, at) {
+        "into" | "through" => at > first && HOW_FAR.contains(&word(tokens, at - 1)),
+        "in" | "inside" | "within" => at > first && matches!(word(tokens, at - 1), "while" | "still" | "already"),
         _ => false,
     })?;
     Some((at - 1, intersection(reading, at + 1, frame.sentence, &[])?))
@@ -124,13 +124,17 @@ fn already_inside(reading: &Reading<'_>, frame: &Frame) -> Option<(usize, usize)
 
 /// The token behind "the intersection", where that begins here; these words may stand before it as well.
 fn intersection(reading: &Reading<'_>, from: usize, sentence: usize, more: &[&str]) -> Option<usize> {
-    let word = |at: usize| reading.story.tokens[at].text.as_str();
     let end = reading.story.sentences[sentence].end;
-    let light = |at: usize| word(at) == "traffic" && at + 1 < end && matches!(word(at + 1), "light" | "signal");
-    let in_name =
-        |at: usize| OF_INTERSECTION.contains(&word(at)) || more.contains(&word(at)) || !more.is_empty() && light(at);
+    let light = |at: usize| {
+        reading.story.word(at) == "traffic" && at + 1 < end && matches!(reading.story.word(at + 1), "light" | "signal")
+    };
+    let in_name = |at: usize| {
+        OF_INTERSECTION.contains(&reading.story.word(at))
+            || more.contains(&reading.story.word(at))
+            || !more.is_empty() && light(at)
+    };
     let at = (from..end).find(|&at| !in_name(at))?;
-    matches!(word(at), "intersection" | "junction").then_some(at + 1)
+    matches!(reading.story.word(at), "intersection" | "junction").then_some(at + 1)
 }
 
 /// "was parked in-lane", "stopped in the travel lane": the token behind it.
@@ -186,9 +190,10 @@ const NAME_OF_DOOR: usize = 5;
 
 /// The tokens of an opening with those of the door: "opened the rear driver side door", "the front door of the van opened".
 pub(super) fn of_door(reading: &Reading<'_>, frame: &Frame) -> (usize, usize) {
-    let word = |at: usize| reading.story.tokens[at].text.as_str();
-    let door = |at: &usize| matches!(word(*at), "door" | "doors");
-    let other = |at: &usize| matches!(word(*at), "," | "and" | "into" | "when" | "while" | "as" | "then" | "after");
+    let door = |at: &usize| matches!(reading.story.word(*at), "door" | "doors");
+    let other = |at: &usize| {
+        matches!(reading.story.word(*at), "," | "and" | "into" | "when" | "while" | "as" | "then" | "after")
+    };
     let sentence = reading.story.sentences[frame.sentence];
     let next = reading.story.frames.iter().map(|other| other.first).filter(|first| *first >= frame.end).min();
     let end = sentence.end.min(frame.end + TO_DOOR).min(next.unwrap_or(sentence.end));
@@ -201,21 +206,20 @@ pub(super) fn of_door(reading: &Reading<'_>, frame: &Frame) -> (usize, usize) {
     let mut before = (sentence.first..frame.first).rev().take(FROM_DOOR).take_while(|at| !other(at));
     let Some(named) = before.find(door) else { return (frame.first, frame.end) };
     let name = (sentence.first..named).rev().take(NAME_OF_DOOR);
-    let first = name.take_while(|at| !other(at) && !is_determiner(word(*at))).last().unwrap_or(named);
+    let first = name.take_while(|at| !other(at) && !is_determiner(reading.story.word(*at))).last().unwrap_or(named);
     (first, frame.end)
 }
 
 /// The token behind the words of an act: of who goes into or through an intersection, or stands in a lane, up to that word.
 fn reach(reading: &Reading<'_>, frame: &Frame, act: Act) -> usize {
-    if matches!(act, Act::Hold | Act::Stop | Act::Park) {
+    if act.rests() {
         return in_a_lane(reading, frame).or_else(|| at_the_edge(reading, frame)).unwrap_or(frame.end);
     }
     if matches!(act, Act::Drift | Act::Swerve) {
         return within_its_lane(reading, frame).unwrap_or(frame.end);
     }
-    let word = |at: usize| reading.story.tokens[at].text.as_str();
     let end = reading.story.sentences[frame.sentence].end;
-    let from = frame.end + usize::from(frame.end < end && matches!(word(frame.end), "into" | "through"));
+    let from = frame.end + usize::from(frame.end < end && matches!(reading.story.word(frame.end), "into" | "through"));
     let behind = if act == Act::Enter { intersection(reading, from, frame.sentence, &OF_LIGHT) } else { None };
     behind.unwrap_or(frame.end)
 }
@@ -249,7 +253,7 @@ fn stays_begun(reading: &Reading<'_>, frame: &Frame) -> bool {
             && later.first > frame.first
             && reading.doer(later) == who
             && later.happened()
-            && matches!(later.act(), Some(Act::Stop | Act::Hold | Act::Slow))
+            && later.act().is_some_and(Act::slows)
     };
     begins(reading, frame) && !reading.story.frames.iter().any(goes_on)
 }

@@ -4,7 +4,7 @@ use super::Reading;
 use super::contact::Contacts;
 use crate::frame::{Frame, Story};
 use crate::lexicon::{Form, Sense};
-use crate::token::{MONTHS, Token};
+use crate::token::{MONTHS, Token, is_crash_noun};
 use crate::world::{Actor, SUBJECT};
 use recrash_model::account::Act;
 use std::ops::Range;
@@ -263,8 +263,7 @@ fn until_the_impact(story: &Story, lead: usize) -> Range<usize> {
         let words = story.sentences[*sentence];
         let mut words = story.tokens[words.first..words.end].iter().map(|token| token.text.as_str());
         // "At the time of the impact": told of that moment.
-        let then = words.next() == Some("at")
-            && words.take(5).any(|word| matches!(word, "impact" | "contact" | "collision" | "crash"));
+        let then = words.next() == Some("at") && words.take(5).any(is_crash_noun);
         then || is_aftermath(story, *sentence) || story.frames.iter().any(stops)
     };
     0..(lead + 1..story.sentences.len()).find(over).unwrap_or(story.sentences.len())

@@ -3,7 +3,7 @@
 use super::Reading;
 use super::ahead::is_told_of_subject;
 use crate::frame::Frame;
-use crate::token::Token;
+use crate::token::{Token, word};
 use crate::world::{Actor, SUBJECT};
 use recrash_model::account::{Act, Kind};
 
@@ -24,11 +24,10 @@ const SMALL: [&str; 13] =
 /// "came out from behind a van", "from between two of the waiting cars", "appeared from the left behind a bus".
 fn is_come_out_of(reading: &Reading<'_>, first: usize) -> bool {
     let tokens = &reading.story.tokens;
-    let word = |at: usize| tokens[at].text.as_str();
     let behind = (first.saturating_sub(SMALL_WITHIN)..first.saturating_sub(1)).rev().find_map(|at| {
-        let side = word(at + 1) == "the" && at + 3 < first && matches!(word(at + 2), "left" | "right");
+        let side = word(tokens, at + 1) == "the" && at + 3 < first && matches!(word(tokens, at + 2), "left" | "right");
         let next = at + if side { 3 } else { 1 };
-        (word(at) == "from" && matches!(word(next), "behind" | "between")).then_some(next + 1)
+        (word(tokens, at) == "from" && matches!(word(tokens, next), "behind" | "between")).then_some(next + 1)
     });
     let small = |token: &Token| SMALL.contains(&token.text.as_str());
     behind.is_some_and(|at| tokens[at..first].iter().all(small))

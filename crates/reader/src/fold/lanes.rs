@@ -74,7 +74,7 @@ pub(super) fn comes_onto_a_lane(reading: &Reading<'_>, number: usize, frame: &Fr
     let from_kerb = before().any(|before| {
         let (first, end) = (before.first, reading.story.sentences[before.sentence].end);
         let kerb = |at: usize| matches!(reading.story.tokens[at].text.as_str(), "curb" | "curbside");
-        matches!(before.act(), Some(Act::Hold | Act::Stop)) && (first..end.min(first + KERB_WITHIN)).any(kerb)
+        before.act().is_some_and(Act::stands) && (first..end.min(first + KERB_WITHIN)).any(kerb)
     });
     from_kerb || !placed && !drove
 }
@@ -105,7 +105,7 @@ pub(super) fn is_about_to_merge(reading: &Reading<'_>, number: usize, frame: &Fr
     let road = matches!(behind.first(), Some(&("onto" | "into")))
         && !behind.iter().any(|word| matches!(*word, "lane" | "lanes" | "traffic" | "gap" | "space" | "path" | "'s"));
     let waits = |frame: &Frame| {
-        let stops = matches!(frame.act(), Some(Act::Stop | Act::Hold)) || frame.sense == Sense::Yield;
+        let stops = frame.act().is_some_and(Act::stands) || frame.sense == Sense::Yield;
         stops && frame.happened()
     };
     road && reading.before(who).any(|(later, frame)| later > number && waits(frame))

@@ -2,18 +2,18 @@
 
 use super::Reading;
 use crate::frame::Frame;
-use crate::token::Token;
+use crate::token::{Token, word};
 use recrash_model::account::{Act, Kind, Manner};
 
 /// "braked hard", "reacted with heavy braking", "came to an abrupt stop"; not "stopped on the hard shoulder", "behind a stopped heavy truck".
 fn brakes_hard(words: &[Token]) -> bool {
-    let word = |at: usize| words.get(at).map_or("", |token| token.text.as_str());
-    let brakes = |at: usize| ["brak", "stop", "slow", "halt", "decel"].iter().any(|stem| word(at).starts_with(stem));
-    (0..words.len()).any(|at| match word(at) {
+    let brakes =
+        |at: usize| ["brak", "stop", "slow", "halt", "decel"].iter().any(|stem| word(words, at).starts_with(stem));
+    (0..words.len()).any(|at| match word(words, at) {
         "heavy" | "abrupt" | "sudden" | "emergency" => brakes(at + 1),
         // "behind a suddenly braking van": that one does.
         "heavily" | "abruptly" | "sharply" | "suddenly"
-            if at > 0 && matches!(word(at - 1), "a" | "an" | "the") && word(at + 1).ends_with("ing") =>
+            if at > 0 && matches!(word(words, at - 1), "a" | "an" | "the") && word(words, at + 1).ends_with("ing") =>
         {
             false
         }
@@ -48,11 +48,10 @@ pub(super) fn manner(reading: &Reading<'_>, number: usize) -> Option<Manner> {
     let frame = &frames[number];
     let sentence = reading.story.sentences[frame.sentence];
     let end = frames[number + 1..].iter().find(|next| next.first > frame.first).map_or(sentence.end, |next| next.first);
-    let word = |at: usize| tokens[at].text.as_str();
     // "an extreme rate of speed", "at a high speed", "at walking pace".
     let speed = |at: usize, of: &[&str]| {
-        of.contains(&word(at))
-            && (at + 1..end.min(at + 4)).any(|next| matches!(word(next), "speed" | "speeds" | "pace"))
+        of.contains(&word(tokens, at))
+            && (at + 1..end.min(at + 4)).any(|next| matches!(word(tokens, next), "speed" | "speeds" | "pace"))
     };
     let mut words = frame.first.saturating_sub(MANNER_BEFORE).max(sentence.first)..end.min(sentence.end);
     let around = &tokens[words.start..words.end.max(words.start)];
@@ -63,7 +62,7 @@ pub(super) fn manner(reading: &Reading<'_>, number: usize) -> Option<Manner> {
     if runs(reading, frame) {
         return Some(Manner::Fast);
     }
-    words.find_map(|at| match word(at) {
+    words.find_map(|at| match word(tokens, at) {
         // "touched the slowly moving van".
         "slowly" if !frame.is_contact() || at < frame.first => Some(Manner::Slow),
         // "moved forward slightly".

@@ -38,8 +38,9 @@ mod undone;
 mod whereabouts;
 
 use crate::chunk::Piece;
-use crate::frame::{Frame, Story, story};
+use crate::frame::{Frame, Story, looks_back, story};
 use crate::lexicon::{Form, Lexicon, Meaning, Sense};
+use crate::token::is_crash_noun;
 use crate::world::{Actor, Own, SUBJECT, is_no_passenger_vehicle};
 use contact::Contacts;
 use recrash_model::account::{
@@ -252,10 +253,7 @@ impl Reading<'_> {
     fn is_told_back(&self, frame: &Frame) -> bool {
         let names = |sentence: usize| {
             let range = self.story.sentences[sentence];
-            let crash = |token: &&crate::token::Token| {
-                matches!(token.text.as_str(), "collision" | "crash" | "contact" | "impact" | "incident" | "accident")
-            };
-            self.story.tokens[range.first..range.end].iter().filter(crash).count()
+            (range.first..range.end).filter(|&at| is_crash_noun(self.story.word(at))).count()
         };
         let touched =
             |sentence: usize| self.story.frames.iter().any(|frame| frame.sentence == sentence && frame.is_contact());
@@ -267,19 +265,7 @@ impl Reading<'_> {
     /// Whether a sentence begins with "prior to the collision".
     pub fn looks_back_from_crash(&self, sentence: usize) -> bool {
         let sentence = self.story.sentences[sentence];
-        let words: Vec<&str> =
-            self.story.tokens[sentence.first..sentence.end].iter().take(5).map(|token| token.text.as_str()).collect();
-        let crash =
-            |word: &&str| matches!(*word, "collision" | "crash" | "contact" | "impact" | "incident" | "accident");
-        match words.as_slice() {
-            ["before" | "preceding", rest @ ..] => rest.iter().take(2).any(crash),
-            [
-                "prior" | "leading" | "just" | "immediately" | "shortly" | "seconds" | "moments",
-                "up" | "to" | "before" | "prior",
-                rest @ ..,
-            ] => rest.iter().take(3).any(crash),
-            _ => false,
-        }
+        looks_back(&self.story.tokens[sentence.first..sentence.end])
     }
 
     /// Frames of somebody up to the contact.
@@ -503,13 +489,13 @@ fn words_of(story: &Story) -> u32 {
 /// "was in a collision involving a passenger of the AV": who rode in it, and nobody whom it met.
 fn hurts_its_own_rider(reading: &Reading<'_>) -> bool {
     let story = &reading.story;
-    let word = |at: usize| story.tokens.get(at).map_or("", |token| token.text.as_str());
     let company = company(reading.record);
     let own = |at: usize| {
-        let rider = matches!(word(at), "passenger" | "occupant" | "rider") && matches!(word(at + 1), "of" | "in");
+        let rider =
+            matches!(story.word(at), "passenger" | "occupant" | "rider") && matches!(story.word(at + 1), "of" | "in");
         rider
-            && word(at + 2) == "the"
-            && (["av", "ego", "subject", "shuttle"].contains(&word(at + 3)) || word(at + 3) == company)
+            && story.word(at + 2) == "the"
+            && (["av", "ego", "subject", "shuttle"].contains(&story.word(at + 3)) || story.word(at + 3) == company)
     };
     story.frames.iter().any(|frame| frame.sense == Sense::Headline && (frame.first..frame.end + 3).any(own))
 }
@@ -663,10 +649,11 @@ fn injury(reading: &Reading<'_>) -> Option<Fact<bool>> {
 fn left(reading: &Reading<'_>) -> Option<Fact<bool>> {
     let partner = reading.contacts.partner?;
     // "clipped its mirror and drove on".
-    let word = |at: usize| reading.story.tokens.get(at).map_or("", |token| token.text.as_str());
     let goes_on = |frame: &Frame| {
-        let on = matches!(word(frame.first), "drove" | "went" | "continued" | "rode" | "kept" | "carried")
-            && (frame.first + 1..frame.end + 2).any(|at| matches!(word(at), "on" | "going" | "driving"));
+        let on =
+            matches!(reading.story.word(frame.first), "drove" | "went" | "continued" | "rode" | "kept" | "carried")
+                && (frame.first + 1..frame.end + 2)
+                    .any(|at| matches!(reading.story.word(at), "on" | "going" | "driving"));
         on && frame.act() == Some(Act::Follow)
     };
     let contact = reading.contacts.first?;

@@ -5,6 +5,7 @@ use super::party::movement_column;
 use crate::chunk::Joint;
 use crate::frame::Frame;
 use crate::lexicon::Sense;
+use crate::token::word;
 use crate::world::SUBJECT;
 use recrash_model::account::{
     Account, Act, ActFact, ContactState, Fact, Kind, KindGroup, LeftRight, Origin, Party, Source, StandReason, told,
@@ -37,7 +38,7 @@ fn of_subject(reading: &Reading<'_>, account: &Account) -> Option<Fact<Movement>
     }
     // Who veers off the road leaves its lane.
     let fixed = matches!(kind, Some(Kind::Wall | Kind::Pole | Kind::Curb | Kind::Barrier));
-    let veers = sv.acts.iter().find(|fact| fact.act == Act::Swerve && !fact.after_contact && !fact.begun);
+    let veers = sv.acts.iter().find(|fact| fact.act == Act::Swerve && fact.happened());
     if let (true, Some(veers), Some(Movement::Straight) | None) = (fixed, veers, told(&movement)) {
         movement = Some(Fact { value: Movement::LaneDeparture, source: veers.source.clone() });
     }
@@ -146,7 +147,7 @@ fn by_way(reading: &Reading<'_>, account: &Account, partner: &Party, mut fact: F
     // Who had left the kerb, and stood in a lane since then, enters no more.
     let before: Vec<Act> = partner.acts.iter().filter(|fact| !fact.after_contact).map(|fact| fact.act).collect();
     let left = before.iter().position(|act| *act == Act::PullOut);
-    let stood = left.is_some_and(|left| before[left + 1..].iter().any(|act| matches!(act, Act::Stop | Act::Hold)));
+    let stood = left.is_some_and(|left| before[left + 1..].iter().any(|act| act.stands()));
     if let (Movement::EnteringTraffic, true, true, Some(column)) = (fact.value, stood, same_way, column) {
         fact = Fact::of_column(column, "CP Pre-Crash Movement");
     }
@@ -206,10 +207,11 @@ fn over_the_line(reading: &Reading<'_>) -> Option<Source> {
         );
         let (first, end) = reading.window(number);
         let line = (first..end).any(|at| {
-            let word = |at: usize| tokens.get(at).map_or("", |token| token.text.as_str());
-            matches!(word(at), "centerline" | "centreline")
-                || matches!(word(at), "center" | "yellow" | "dividing") && word(at + 1).starts_with("line")
-                || matches!(word(at), "opposite" | "opposing" | "oncoming") && word(at + 1).starts_with("lane")
+            matches!(word(tokens, at), "centerline" | "centreline")
+                || matches!(word(tokens, at), "center" | "yellow" | "dividing")
+                    && word(tokens, at + 1).starts_with("line")
+                || matches!(word(tokens, at), "opposite" | "opposing" | "oncoming")
+                    && word(tokens, at + 1).starts_with("lane")
         });
         let over =
             (first..end).any(|at| matches!(tokens[at].text.as_str(), "over" | "across" | "crossed" | "crossing"));
@@ -226,10 +228,12 @@ fn into_its_lane(reading: &Reading<'_>) -> Option<Source> {
     let left = reading.before(actor).any(|(_, frame)| over(frame) && frame.side == Some(LeftRight::Left));
     let its_lane = |number: usize| {
         let (first, end) = reading.window(number);
-        let word = |at: usize| tokens.get(at).map_or("", |token| token.text.as_str());
         // "departed from its lane" is out of its own.
-        let into = |at: usize| at > 0 && !matches!(word(at - 1), "from" | "of" | "left" | "leaving" | "departed");
-        (first..end).any(|at| word(at + 1) == "lane" && (word(at) == "'s" || word(at) == "its" && into(at)))
+        let into =
+            |at: usize| at > 0 && !matches!(word(tokens, at - 1), "from" | "of" | "left" | "leaving" | "departed");
+        (first..end).any(|at| {
+            word(tokens, at + 1) == "lane" && (word(tokens, at) == "'s" || word(tokens, at) == "its" && into(at))
+        })
     };
     // "came over into its lane", and not "turned left and entered its lane".
     let (_, frame) = moves.find(|(number, _)| its_lane(*number))?;

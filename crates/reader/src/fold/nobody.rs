@@ -155,17 +155,16 @@ const LOADS: [&str; 8] = ["load", "loading", "lift", "lifting", "lifted", "winch
 /// behind the crash: who had been there before. The tokens of its noun.
 pub(super) fn had_been_there(reading: &Reading<'_>, actor: Actor, (first, end): (usize, usize)) -> bool {
     let (story, known) = (&reading.story, &reading.story.world.actors[actor]);
-    let word = |at: usize| story.tokens.get(at).map_or("", |token| token.text.as_str());
-    let at = end + usize::from(matches!(word(end), "that" | "which" | "who" | ","));
-    let at = match (word(at), word(at + 1)) {
+    let at = end + usize::from(matches!(story.word(end), "that" | "which" | "who" | ","));
+    let at = match (story.word(at), story.word(at + 1)) {
         ("had", "been") => at + 2,
         ("was" | "were", _) if at > end => at + 1,
         _ => at,
     };
     let stays =
-        matches!(word(at), "waiting" | "following" | "standing" | "traveling" | "queued" | "driving" | "riding");
-    let beside = |at: usize| matches!(word(at), "behind" | "ahead" | "beside" | "alongside" | "next" | "in");
-    let there = stays && beside(at + 1) || word(at) == "following" || word(end) == "behind";
+        matches!(story.word(at), "waiting" | "following" | "standing" | "traveling" | "queued" | "driving" | "riding");
+    let beside = |at: usize| matches!(story.word(at), "behind" | "ahead" | "beside" | "alongside" | "next" | "in");
+    let there = stays && beside(at + 1) || story.word(at) == "following" || story.word(end) == "behind";
     // Told of the subject vehicle as what it had done before.
     let back = |(number, frame): (usize, &Frame)| {
         let before = frame.who == Some(SUBJECT) && frame.act().is_some() && frame.first < first && end <= frame.end + 2;

@@ -3,6 +3,7 @@
 use super::Reading;
 use crate::frame::Frame;
 use crate::lexicon::{Lexicon, Meaning, Sense};
+use crate::token::word;
 use crate::world::{Actor, SUBJECT};
 use recrash_model::account::{Act, ActFact, KindGroup, LeftRight};
 use std::ops::Range;
@@ -21,14 +22,15 @@ pub(super) fn waits_to_cross(reading: &Reading<'_>, actor: Actor, mut acts: Vec<
     if known.kind.is_none_or(|kind| kind.group() != KindGroup::OnFoot) {
         return acts;
     }
-    let word = |at: usize| story.tokens.get(at).map_or("", |token| token.text.as_str());
-    let ends = |at: &usize| !matches!(word(*at), "" | "." | "," | ";" | "and" | "while" | "when" | "as");
+    let ends = |at: &usize| !matches!(story.word(*at), "" | "." | "," | ";" | "and" | "while" | "when" | "as");
     let told = (end..end + KERB_WITHIN).take_while(ends);
-    let at_kerb = matches!(word(end), "at" | "on" | "near" | "by" | "beside")
-        .then(|| told.clone().find(|at| matches!(word(*at), "curb" | "kerb" | "corner" | "curbside" | "kerbside")));
-    let waits = matches!(word(end), "preparing" | "about" | "intending" | "ready" | "poised" | "looking" | "wanting");
-    let to_cross = (waits && word(end + 1) == "to")
-        .then(|| told.clone().find(|at| matches!(word(*at), "cross" | "step" | "walk" | "enter")));
+    let at_kerb = matches!(story.word(end), "at" | "on" | "near" | "by" | "beside").then(|| {
+        told.clone().find(|at| matches!(story.word(*at), "curb" | "kerb" | "corner" | "curbside" | "kerbside"))
+    });
+    let waits =
+        matches!(story.word(end), "preparing" | "about" | "intending" | "ready" | "poised" | "looking" | "wanting");
+    let to_cross = (waits && story.word(end + 1) == "to")
+        .then(|| told.clone().find(|at| matches!(story.word(*at), "cross" | "step" | "walk" | "enter")));
     let Some(last) = at_kerb.flatten().or(to_cross.flatten()) else { return acts };
     let step = story.frames.iter().rposition(|frame| frame.first <= first).unwrap_or(0) as u32;
     let (after_contact, done, after_other, manner) = (false, false, None, None);
@@ -64,12 +66,12 @@ struct Turned {
 
 /// Adds the turn in which somebody was, where none is told with a verb: before it slowed or stood in it.
 pub(super) fn add_turn(reading: &Reading<'_>, actor: Actor, all: &mut Vec<ActFact>) {
-    let turns = |fact: &ActFact| matches!(fact.act, Act::Turn | Act::UTurn) && !fact.after_contact;
+    let turns = |fact: &ActFact| fact.act.turns() && !fact.after_contact;
     if all.iter().any(turns) {
         return;
     }
     let Some(Turned { words, number, side, begun }) = turn_of(reading, actor) else { return };
-    let waits = |fact: &ActFact| matches!(fact.act, Act::Stop | Act::Hold | Act::Slow) && !fact.after_contact;
+    let waits = |fact: &ActFact| fact.act.slows() && !fact.after_contact;
     let before = all.iter().filter(|fact| !fact.after_contact).count();
     // Which it left off: to stand for the second time.
     let first = if begun { all.iter().rposition(waits) } else { all.iter().position(waits) };
@@ -90,7 +92,7 @@ fn turn_of(reading: &Reading<'_>, actor: Actor) -> Option<Turned> {
     (0..until).find_map(|at| {
         if let Some((words, side)) = left_off(reading, at) {
             let number = told_with(reading, actor, at)?;
-            let waits = matches!(reading.story.frames[number].act(), Some(Act::Stop | Act::Slow | Act::Hold));
+            let waits = reading.story.frames[number].act().is_some_and(Act::slows);
             let goes = reading.before(actor).any(|(other, frame)| other < number && frame.act().is_some_and(goes_on));
             // What went back out of it is told of that.
             let back = reading.did(actor, Act::Reverse);
@@ -98,7 +100,7 @@ fn turn_of(reading: &Reading<'_>, actor: Actor) -> Option<Turned> {
         }
         if let Some((words, side)) = stopped_within(reading, at) {
             let number = told_with(reading, actor, at)?;
-            let stands = matches!(reading.story.frames[number].act(), Some(Act::Stop | Act::Hold));
+            let stands = reading.story.frames[number].act().is_some_and(Act::stands);
             return stands.then_some(Turned { words, number, side, begun: false });
         }
         let words = slip_lane(reading, at).filter(|_| actor == SUBJECT)?;
@@ -116,27 +118,27 @@ const fn goes_on(act: Act) -> bool {
 /// that was told before is its.
 fn left_off(reading: &Reading<'_>, at: usize) -> Option<(Range<usize>, Option<LeftRight>)> {
     let tokens = &reading.story.tokens;
-    let word = |at: usize| tokens.get(at).map_or("", |token| token.text.as_str());
-    if word(at) != "before" {
+    if word(tokens, at) != "before" {
         return None;
     }
-    let ends = |at: usize| ["complet", "finish", "conclu"].iter().any(|stem| word(at).starts_with(stem));
+    let ends = |at: usize| ["complet", "finish", "conclu"].iter().any(|stem| word(tokens, at).starts_with(stem));
     let clause = at + 1..(at + LEFT_OFF_WITHIN).min(tokens.len());
-    let clause = clause.take_while(|&at| !matches!(word(at), "," | "." | "when" | "and"));
+    let clause = clause.take_while(|&at| !matches!(word(tokens, at), "," | "." | "when" | "and"));
     let clause: Vec<usize> = clause.collect();
-    let turn = clause.iter().copied().find(|&at| word(at) == "turn")?;
+    let turn = clause.iter().copied().find(|&at| word(tokens, at) == "turn")?;
     let end = clause.iter().copied().find(|&at| ends(at))?;
     // "before a truck could complete its left turn": that one's.
     let other = |at: usize| Lexicon::get().longest(tokens, at, |meaning| matches!(meaning, Meaning::Kind(_))).is_some();
-    let whose =
-        clause.iter().any(|&at| matches!(word(at), "the" | "its" | "that" | "this")) && !(at + 1..turn).any(other);
-    let side = |at: usize| match word(at) {
+    let whose = clause.iter().any(|&at| matches!(word(tokens, at), "the" | "its" | "that" | "this"))
+        && !(at + 1..turn).any(other);
+    let side = |at: usize| match word(tokens, at) {
         "left" => Some(LeftRight::Left),
         "right" => Some(LeftRight::Right),
         _ => None,
     };
     let told = || {
-        let before = (1..at).rfind(|&at| word(at).starts_with("turn") && side(at - 1).or(side(at + 1)).is_some())?;
+        let before =
+            (1..at).rfind(|&at| word(tokens, at).starts_with("turn") && side(at - 1).or(side(at + 1)).is_some())?;
         side(before - 1).or(side(before + 1))
     };
     whose.then(|| (at..turn.max(end) + 1, side(turn - 1).or_else(told)))
@@ -145,21 +147,21 @@ fn left_off(reading: &Reading<'_>, at: usize) -> Option<(Range<usize>, Option<Le
 /// "came to a stop midway through its right turn": it was in that.
 fn stopped_within(reading: &Reading<'_>, at: usize) -> Option<(Range<usize>, Option<LeftRight>)> {
     let tokens = &reading.story.tokens;
-    let word = |at: usize| tokens.get(at).map_or("", |token| token.text.as_str());
-    let into = match (word(at), word(at + 1), word(at + 2)) {
+    let into = match (word(tokens, at), word(tokens, at + 1), word(tokens, at + 2)) {
         ("midway" | "halfway" | "partway", "through" | "into", _) => at + 2,
         ("part", "way", "through" | "into") => at + 3,
         _ => return None,
     };
     // "partway into a left turn lane" is no turn.
-    let turn = (into + 1..into + 4)
-        .find(|&at| word(at) == "turn" && !matches!(word(at + 1), "lane" | "lanes" | "pocket" | "bay"))?;
-    let side = (into..turn).find_map(|at| match word(at) {
+    let turn = (into + 1..into + 4).find(|&at| {
+        word(tokens, at) == "turn" && !matches!(word(tokens, at + 1), "lane" | "lanes" | "pocket" | "bay")
+    })?;
+    let side = (into..turn).find_map(|at| match word(tokens, at) {
         "left" => Some(LeftRight::Left),
         "right" => Some(LeftRight::Right),
         _ => None,
     });
-    matches!(word(into), "its" | "the" | "a").then_some((at..turn + 1, side))
+    matches!(word(tokens, into), "its" | "the" | "a").then_some((at..turn + 1, side))
 }
 
 /// What was left off stands so near behind "before". [tokens]
@@ -204,7 +206,7 @@ fn is_of_others(reading: &Reading<'_>, at: usize) -> bool {
 /// "in the slip lane from southbound Elm Street": where traffic keeps right, in a turn to the right. Onto a highway it is a ramp.
 fn slip_lane(reading: &Reading<'_>, at: usize) -> Option<Range<usize>> {
     let tokens = &reading.story.tokens;
-    let word = |at: usize| tokens.get(at).map_or("", |token| token.text.as_str());
+    let word = |at: usize| word(tokens, at);
     if !matches!(word(at), "in" | "on" | "within" | "inside") {
         return None;
     }

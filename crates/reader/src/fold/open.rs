@@ -4,6 +4,7 @@ use super::{Reading, TRUCK_MAKES};
 use crate::chunk::{is_colour, is_determiner};
 use crate::frame::Frame;
 use crate::lexicon::Lexicon;
+use crate::token::word;
 use recrash_model::account::{Account, Act, Fact, Kind, LaneWord, Origin, Source, told};
 
 /// The lane of who comes from behind and goes round in that of those who come towards it, where no other is told of it.
@@ -14,7 +15,6 @@ pub(super) fn oncoming_lane(reading: &Reading<'_>, account: &Account) -> Option<
         return None;
     }
     let tokens = &reading.story.tokens;
-    let word = |at: usize| tokens.get(at).map_or("", |token| token.text.as_str());
     let goes = |frame: &Frame| {
         matches!(frame.act(), Some(Act::Pass | Act::LaneChange | Act::Drift | Act::Swerve | Act::Enter | Act::Cross))
     };
@@ -22,8 +22,9 @@ pub(super) fn oncoming_lane(reading: &Reading<'_>, account: &Account) -> Option<
     frames.find_map(|(number, _)| {
         let (first, end) = reading.window(number);
         (first..end).find_map(|at| {
-            let lane = if word(at + 1) == "traffic" { at + 2 } else { at + 1 };
-            let there = matches!(word(at), "oncoming" | "opposing" | "opposite") && word(lane).starts_with("lane");
+            let lane = if word(tokens, at + 1) == "traffic" { at + 2 } else { at + 1 };
+            let there = matches!(word(tokens, at), "oncoming" | "opposing" | "opposite")
+                && word(tokens, lane).starts_with("lane");
             (there && lane < end).then(|| reading.told(LaneWord::Opposing, at, lane + 1))
         })
     })

@@ -104,12 +104,11 @@ fn in_the_same_lane(reading: &Reading<'_>, actor: Actor) -> Option<(LaneWord, us
 /// "A van going south entered the northbound lane to pass": the lane of those who come the other way.
 fn in_the_lane_of_the_other_way(reading: &Reading<'_>, actor: Actor) -> Option<(LaneWord, usize, usize)> {
     let (own, ..) = reading.story.world.actors[actor].heading.filter(|_| actor != SUBJECT)?;
-    let word = |at: usize| reading.story.tokens.get(at).map_or("", |token| token.text.as_str());
     let over = |frame: &Frame| {
         let (compass, first, end) = frame.heading?;
         let goes = matches!(frame.act(), Some(Act::Enter | Act::LaneChange | Act::Drift | Act::Swerve | Act::Pass));
-        let lane = end + usize::from(matches!(word(end), "travel" | "traffic" | "through"));
-        let other = compass == own.turned(4) && matches!(word(lane), "lane" | "lanes");
+        let lane = end + usize::from(matches!(reading.story.word(end), "travel" | "traffic" | "through"));
+        let other = compass == own.turned(4) && matches!(reading.story.word(lane), "lane" | "lanes");
         (goes && other && frame.happened()).then_some((LaneWord::Opposing, first, lane + 1))
     };
     reading.before(actor).find_map(|(_, frame)| over(frame))
@@ -122,13 +121,12 @@ fn turn_lane_to_come(reading: &Reading<'_>, actor: Actor) -> Option<(LaneWord, u
     let mut behind = frames[number + 1..].iter().take_while(|frame| frame.sentence == pass.sentence);
     let entered = behind.find(|frame| frame.who == Some(actor) && frame.act() == Some(Act::Enter))?;
     let end = reading.story.sentences[entered.sentence].end;
-    let word = |at: usize| reading.story.tokens[at].text.as_str();
-    let lane = (entered.first + 1..end).take(LANE_WITHIN).find(|&at| word(at) == "lane")?;
+    let lane = (entered.first + 1..end).take(LANE_WITHIN).find(|&at| reading.story.word(at) == "lane")?;
     let value = match entered.side? {
         LeftRight::Left => LaneWord::LeftTurn,
         LeftRight::Right => LaneWord::RightTurn,
     };
-    matches!(word(lane - 1), "turn" | "turning").then_some((value, entered.first, lane + 1))
+    matches!(reading.story.word(lane - 1), "turn" | "turning").then_some((value, entered.first, lane + 1))
 }
 
 /// The name of a lane that is entered is no longer, with its article. [tokens]
@@ -155,11 +153,10 @@ fn after(reading: &Reading<'_>, actor: Actor) -> Option<Fact<Compass>> {
 /// that on which it was to go.
 fn by_way_of(reading: &Reading<'_>, end: usize) -> Option<(Way, Way)> {
     let story = &reading.story;
-    let word = |at: usize| story.tokens.get(at).map_or("", |token| token.text.as_str());
-    let compass = |at: usize| bound(word(at)).map(|compass| (compass, at, at + 1));
+    let compass = |at: usize| bound(story.word(at)).map(|compass| (compass, at, at + 1));
     let sentence = story.sentences.iter().find(|sentence| (sentence.first..sentence.end).contains(&end))?;
-    let via = (end..sentence.end).find(|&at| word(at) == "via")?;
-    let to = (end..via).find(|&at| matches!(word(at), "to" | "onto"))?;
+    let via = (end..sentence.end).find(|&at| story.word(at) == "via")?;
+    let to = (end..via).find(|&at| matches!(story.word(at), "to" | "onto"))?;
     Some((compass(via + 1)?, compass(to + 1)?))
 }
 

@@ -3,7 +3,7 @@
 use super::Reading;
 use crate::frame::Frame;
 use crate::lexicon::Lexicon;
-use crate::token::{Sentence, Token, number};
+use crate::token::{Sentence, Token, number, word};
 use crate::world::SUBJECT;
 use recrash_model::account::{Act, Fact, Place, PlaceKind, RoadFeature, Source};
 use recrash_model::template::RoadType;
@@ -114,9 +114,8 @@ const NEAR_STAND: usize = 50;
 /// the kind was named before.
 fn kerbs(reading: &Reading<'_>, place: &mut Place, number: usize, sentence: Sentence) {
     let tokens = &reading.story.tokens;
-    let word = |at: usize| tokens[at].text.as_str();
-    let partly = (sentence.first..sentence.end).any(|at| matches!(word(at), "partially" | "partly"));
-    for curb in (sentence.first..sentence.end).filter(|at| word(*at) == "curb" && !partly) {
+    let partly = (sentence.first..sentence.end).any(|at| matches!(word(tokens, at), "partially" | "partly"));
+    for curb in (sentence.first..sentence.end).filter(|at| word(tokens, *at) == "curb" && !partly) {
         let Some(first) = leads_to_kerb(tokens, sentence.first, curb) else { continue };
         let (start, end) = (tokens[first].start, tokens[curb].end);
         let named = |fact: &Fact<RoadFeature>| {
@@ -140,16 +139,16 @@ fn is_stand(act: Option<Act>) -> bool {
 
 /// The token of "at" in "at the northwest-bound curb", where these words lead to the kerb that is named here.
 fn leads_to_kerb(tokens: &[Token], from: usize, curb: usize) -> Option<usize> {
-    let word = |at: usize| tokens[at].text.as_str();
     let tells = |at: &usize| {
-        let compass = ["north", "south", "east", "west"].iter().any(|stem| word(*at).starts_with(stem));
-        compass || matches!(word(*at), "left" | "right" | "near" | "bound" | "side" | "hand" | "outer")
+        let compass = ["north", "south", "east", "west"].iter().any(|stem| word(tokens, *at).starts_with(stem));
+        compass || matches!(word(tokens, *at), "left" | "right" | "near" | "bound" | "side" | "hand" | "outer")
     };
     let lane = tokens.get(curb + 1).is_some_and(|next| matches!(next.text.as_str(), "lane" | "cut" | "ramp"));
     let told = (from..curb).rev().take(2).take_while(tells).count();
-    let article = curb.checked_sub(told + 1).filter(|at| *at >= from && matches!(word(*at), "the" | "a" | "its"));
+    let article =
+        curb.checked_sub(told + 1).filter(|at| *at >= from && matches!(word(tokens, *at), "the" | "a" | "its"));
     let at = article?.checked_sub(1)?;
-    (!lane && at >= from && TO_KERB.contains(&word(at))).then_some(at)
+    (!lane && at >= from && TO_KERB.contains(&word(tokens, at))).then_some(at)
 }
 
 /// Words that lead to a junction at which somebody is, and those of who is elsewhere: "near the intersection", "after the intersection".
@@ -178,8 +177,8 @@ const OFF_JUNCTION: [&str; 19] = [
 
 /// "in a queue of traffic at the intersection", "as it approached the junction": each junction at which the subject vehicle is told to be.
 fn at_junctions(reading: &Reading<'_>, place: &mut Place, number: usize, sentence: Sentence) {
-    let word = |at: usize| reading.story.tokens[at].text.as_str();
-    let named = |at: &usize| matches!(word(*at), "intersection" | "junction" | "t-intersection" | "t-junction");
+    let named =
+        |at: &usize| matches!(reading.story.word(*at), "intersection" | "junction" | "t-intersection" | "t-junction");
     for at in (sentence.first..sentence.end).filter(named) {
         if let Some(lead) = leads_there(reading, number, (sentence.first, at), &AT_JUNCTION) {
             place.features.push(reading.told(RoadFeature::Intersection, lead, at + 1));
@@ -189,9 +188,8 @@ fn at_junctions(reading: &Reading<'_>, place: &mut Place, number: usize, sentenc
 
 /// "was stopped in the right turn slip lane": each slip lane in which the subject vehicle is told to be.
 fn in_slip_lanes(reading: &Reading<'_>, place: &mut Place, number: usize, sentence: Sentence) {
-    let word = |at: usize| reading.story.tokens.get(at).map_or("", |token| token.text.as_str());
-    for at in (sentence.first..sentence.end).filter(|at| matches!(word(*at), "slip" | "channelized")) {
-        let lane = (at + 1..at + 5).find(|at| word(*at) == "lane");
+    for at in (sentence.first..sentence.end).filter(|at| matches!(reading.story.word(*at), "slip" | "channelized")) {
+        let lane = (at + 1..at + 5).find(|at| reading.story.word(*at) == "lane");
         let lead = leads_there(reading, number, (sentence.first, at), &["in", "on", "into"]);
         if let Some((lane, lead)) = lane.zip(lead) {
             place.features.push(reading.told(RoadFeature::Merge, lead, lane + 1));
@@ -201,11 +199,11 @@ fn in_slip_lanes(reading: &Reading<'_>, place: &mut Place, number: usize, senten
 
 /// The token of the words before a place that lead the subject vehicle there: of those that lead elsewhere too the last.
 fn leads_there(reading: &Reading<'_>, number: usize, (from, at): (usize, usize), leads: &[&str]) -> Option<usize> {
-    let word = |at: usize| reading.story.tokens[at].text.as_str();
-    let before = (at.saturating_sub(6).max(from)..at).rev().take_while(|at| word(*at) != ",");
-    let tells = |at: &usize| leads.contains(&word(*at)) || OFF_JUNCTION.contains(&word(*at));
+    let before = (at.saturating_sub(6).max(from)..at).rev().take_while(|at| reading.story.word(*at) != ",");
+    let tells =
+        |at: &usize| leads.contains(&reading.story.word(*at)) || OFF_JUNCTION.contains(&reading.story.word(*at));
     let lead = before.into_iter().find(tells)?;
-    (leads.contains(&word(lead)) && !is_told_of_another(reading, number, lead)).then_some(lead)
+    (leads.contains(&reading.story.word(lead)) && !is_told_of_another(reading, number, lead)).then_some(lead)
 }
 
 /// So many words lie between a turn and the way off the street at which it is made, at most. [tokens]
@@ -228,25 +226,27 @@ fn ways_off(reading: &Reading<'_>, place: &mut Place, sentence: Sentence) {
 
 /// The words from a turn to the way off the street into which it leads, or out of which; or from that to the turn behind it.
 fn turns_off(tokens: &[Token], at: usize, end: usize) -> Option<(usize, usize)> {
-    let word = |at: usize| tokens.get(at).map_or("", |token| token.text.as_str());
-    let turns =
-        |at: &usize| matches!(word(*at), "turn" | "turns" | "turned" | "turning") && (*at == 0 || word(*at - 1) != "-");
+    let turns = |at: &usize| {
+        matches!(word(tokens, *at), "turn" | "turns" | "turned" | "turning")
+            && (*at == 0 || word(tokens, *at - 1) != "-")
+    };
     // "in the left lane" leaves nothing.
-    let left = |at: usize| word(at) == "left" && matches!(word(at + 1), "a" | "an" | "the" | "its");
-    let leaves = |at: usize| matches!(word(at), "exit" | "exited" | "exiting" | "leaving") || left(at);
-    let leads =
-        |at: usize| matches!(word(at), "into" | "toward" | "towards" | "from") || leaves(at) && word(at) != "left";
-    let out = |at: usize| word(at) == "out" && word(at + 1) == "of";
+    let left = |at: usize| word(tokens, at) == "left" && matches!(word(tokens, at + 1), "a" | "an" | "the" | "its");
+    let leaves = |at: usize| matches!(word(tokens, at), "exit" | "exited" | "exiting" | "leaving") || left(at);
+    let leads = |at: usize| {
+        matches!(word(tokens, at), "into" | "toward" | "towards" | "from") || leaves(at) && word(tokens, at) != "left"
+    };
+    let out = |at: usize| word(tokens, at) == "out" && word(tokens, at + 1) == "of";
     // "toward the left lane next to a parking lot" leads to the lane.
     let same_clause = |at: &usize| {
-        !matches!(word(*at), "," | ";" | "when" | "while" | "as" | "near" | "next" | "beside" | "past" | "by")
+        !matches!(word(tokens, *at), "," | ";" | "when" | "while" | "as" | "near" | "next" | "beside" | "past" | "by")
     };
     let before = (at.saturating_sub(NEAR_TURN)..at).rev().take_while(same_clause).find(turns);
     if let Some(first) = before.filter(|first| (*first..at).any(|at| leads(at) || out(at))) {
         return Some((first, end));
     }
     let first = (at.saturating_sub(5)..at).rev().take_while(same_clause).find(|at| leaves(*at))?;
-    let last = (end..end + 4).take_while(|at| word(*at) != ".").find(turns)?;
+    let last = (end..end + 4).take_while(|at| word(tokens, *at) != ".").find(turns)?;
     Some((first, last + 1))
 }
 
@@ -257,7 +257,7 @@ fn is_after(reading: &Reading<'_>, token: usize) -> bool {
 
 /// "a T-intersection", "the T junction": three roads meet.
 fn is_tee(tokens: &[Token], at: usize) -> bool {
-    let word = |ahead: usize| tokens.get(at + ahead).map_or("", |token| token.text.as_str());
+    let word = |ahead: usize| word(tokens, at + ahead);
     let joined = matches!(word(0), "t-intersection" | "t-junction");
     let behind = if word(1) == "-" { word(2) } else { word(1) };
     joined || matches!(word(0), "t" | "tee") && matches!(behind, "intersection" | "junction")
@@ -271,7 +271,7 @@ fn lanes(reading: &Reading<'_>, place: &mut Place, first: usize, end: usize) {
             place.arms = Some(reading.told(3, at, at + 1));
         }
         // "in the single lane".
-        let word = |ahead: usize| tokens.get(at + ahead).map_or("", |token| token.text.as_str());
+        let word = |ahead: usize| word(tokens, at + ahead);
         // "a single lane change", "a single lane of traffic" tell nothing of the road.
         let of_lane = matches!(word(2), "change" | "changes" | "shift" | "merge" | "closure")
             || (word(2), word(3)) == ("of", "traffic");
@@ -315,16 +315,16 @@ fn lanes(reading: &Reading<'_>, place: &mut Place, first: usize, end: usize) {
 
 /// "a two-lane road", "a four-lane highway": half of them lead each way; not "a two-lane one-way street", "the right lane of a two-lane road".
 fn is_both_ways(reading: &Reading<'_>, (first, at, end): (usize, usize, usize)) -> bool {
-    let word = |at: usize| reading.story.tokens.get(at).map_or("", |token| token.text.as_str());
-    let road = matches!(word(at + 2), "road" | "street" | "highway" | "stretch") && word(at + 1) == "lane";
+    let road = matches!(reading.story.word(at + 2), "road" | "street" | "highway" | "stretch")
+        && reading.story.word(at + 1) == "lane";
     let told = |words: (&str, &str)| {
         reading.story.tokens.windows(2).any(|pair| (pair[0].text.as_str(), pair[1].text.as_str()) == words)
     };
     // "in the left lane of a two-lane road. A van in the right lane": both lead one way.
-    let two = matches!(word(at), "two" | "2") && told(("left", "lane")) && told(("right", "lane"));
+    let two = matches!(reading.story.word(at), "two" | "2") && told(("left", "lane")) && told(("right", "lane"));
     let one_way = two || told(("one", "way"));
-    let of_lane = (first.max(at.saturating_sub(3))..at).any(|at| matches!(word(at), "lane" | "lanes"));
-    let way = (at + 3..end.min(at + 5)).any(|at| crate::chunk::bound(word(at)).is_some());
-    let any = at > first && word(at - 1) == "a";
-    road && any && matches!(word(at), "two" | "2" | "four" | "4") && !one_way && !of_lane && !way
+    let of_lane = (first.max(at.saturating_sub(3))..at).any(|at| matches!(reading.story.word(at), "lane" | "lanes"));
+    let way = (at + 3..end.min(at + 5)).any(|at| crate::chunk::bound(reading.story.word(at)).is_some());
+    let any = at > first && reading.story.word(at - 1) == "a";
+    road && any && matches!(reading.story.word(at), "two" | "2" | "four" | "4") && !one_way && !of_lane && !way
 }

@@ -4,7 +4,7 @@ use super::Reading;
 use super::controls::{in_its_queue, is_lamp, shown};
 use crate::frame::Frame;
 use crate::lexicon::{COMPANY, Lexicon, Meaning, Progress, Relation, Sense};
-use crate::token::Token;
+use crate::token::{Token, word};
 use crate::world::{Actor, SUBJECT};
 use recrash_model::account::{Act, Fact, Kind, KindGroup, SignalState, Source, StandReason};
 
@@ -180,7 +180,7 @@ fn because(reading: &Reading<'_>, number: usize) -> Option<Fact<StandReason>> {
     let here = |(_, next): &(usize, &Frame)| next.sentence == frame.sentence;
     let (at, next) = story.frames.iter().enumerate().skip(number + 1).take_while(here).find(other)?;
     // "as cars ahead were queued", and not "as a van hit it".
-    let stands = matches!(next.act(), Some(Act::Stop | Act::Hold)) && next.happened();
+    let stands = next.act().is_some_and(Act::stands) && next.happened();
     let queued = stands && next.who.is_some_and(|who| story.world.actors[who].several);
     let why = |token: &Token| matches!(token.text.as_str(), "because" | "since" | "so") || queued && token.text == "as";
     let joint = (frame.end..next.first.max(frame.end)).find(|at| why(&story.tokens[*at]))?;
@@ -192,7 +192,7 @@ fn because(reading: &Reading<'_>, number: usize) -> Option<Fact<StandReason>> {
     }
     let known = &story.world.actors[who];
     let kind = known.kind?;
-    let stands = matches!(next.act(), Some(Act::Stop | Act::Hold | Act::Slow)) && next.happened();
+    let stands = next.act().is_some_and(Act::slows) && next.happened();
     let ahead = known.relations.iter().any(|(relation, _)| *relation == Relation::Ahead);
     let value = match waits_for(kind) {
         Some(reason) => reason,
@@ -214,14 +214,13 @@ fn is_of_another(tokens: &[Token], at: usize, reason: StandReason) -> bool {
 
 /// "was stopped at a red light with a line of vehicles behind it": it stands in no queue for that. The token behind "line of".
 fn is_behind_it(tokens: &[Token], end: usize) -> bool {
-    let word = |at: usize| tokens.get(at).map_or("", |token| token.text.as_str());
-    let several = matches!(word(end), "vehicles" | "cars" | "traffic" | "trucks");
+    let several = matches!(word(tokens, end), "vehicles" | "cars" | "traffic" | "trucks");
     let at = end + usize::from(several);
     let own = matches!(
-        (word(at + 1), word(at + 2)),
+        (word(tokens, at + 1), word(tokens, at + 2)),
         ("it" | "them", _) | ("the", "av" | "vehicle" | "subject" | "ego" | COMPANY)
     );
-    word(at) == "behind" && own
+    word(tokens, at) == "behind" && own
 }
 
 /// "stopped for a paramedic on foot": why, by whom it stops for.
@@ -278,7 +277,7 @@ fn stands_still(reading: &Reading<'_>, actor: Actor, number: usize) -> bool {
         .iter()
         .skip(number)
         .take(3)
-        .any(|frame| frame.who == Some(actor) && matches!(frame.act(), Some(Act::Hold | Act::Stop)))
+        .any(|frame| frame.who == Some(actor) && frame.act().is_some_and(Act::stands))
 }
 
 /// Where the clause of a frame begins, where a reason leads it in.

@@ -75,7 +75,7 @@ pub(crate) fn role(reading: &Reading<'_>, account: &Account) -> Option<Fact<Role
 fn role_of_other(reading: &Reading<'_>, account: &Account) -> Option<Fact<Role>> {
     let partner = account.partner.as_ref()?;
     let crash_type = told(&account.crash_type);
-    let over = did_any(partner, &[Act::LaneChange, Act::Drift, Act::Reverse, Act::Turn])
+    let over = partner.did_any(&[Act::LaneChange, Act::Drift, Act::Reverse, Act::Turn])
         || told(&partner.movement) == Some(Movement::CrossingIntoOpposingLane);
     let name = if crash_type == Some(CrashType::Secondary) {
         "a crash ahead or behind came to it"
@@ -93,17 +93,13 @@ fn role_of_other(reading: &Reading<'_>, account: &Account) -> Option<Fact<Role>>
     Some(Fact::by_rule(Role::Responder, name))
 }
 
-fn did_any(party: &Party, acts: &[Act]) -> bool {
-    acts.iter().any(|act| party.did(*act))
-}
-
 /// Whether all that somebody did up to the contact is among these.
 fn did_only(party: &Party, acts: &[Act]) -> bool {
     party.acts.iter().filter(|fact| !fact.after_contact).all(|fact| acts.contains(&fact.act))
 }
 
 fn broke_a_rule(partner: &Party) -> bool {
-    did_any(partner, &[Act::RunRed, Act::RunStop, Act::FailToYield, Act::WrongWay])
+    partner.did_any(&[Act::RunRed, Act::RunStop, Act::FailToYield, Act::WrongWay])
 }
 
 /// Whether a thing came into the way: one that is fixed does not, whatever a sentence makes its subject.
@@ -112,7 +108,7 @@ fn comes(reading: &Reading<'_>, partner: &Party) -> bool {
         let Some(actor) = reading.contacts.partner else { return false };
         reading.before(actor).any(|(_, frame)| frame.sense == Sense::Push && frame.happened())
     };
-    let moved = partner.acts.iter().any(|fact| !fact.after_contact && !matches!(fact.act, Act::Hold | Act::Stop));
+    let moved = partner.acts.iter().any(|fact| !fact.after_contact && !fact.act.stands());
     !is_fixed(partner) && (moved || thrown())
 }
 
@@ -130,12 +126,12 @@ impl Case<'_> {
             Act::Pass,
             Act::OpenDoor,
         ];
-        did_any(self.partner, &moves)
+        self.partner.did_any(&moves)
     }
 
     /// Whether it left its lane, or came into one.
     fn changes(&self) -> bool {
-        did_any(&self.account.sv, &[Act::LaneChange, Act::UTurn, Act::PullOut])
+        self.account.sv.did_any(&[Act::LaneChange, Act::UTurn, Act::PullOut])
     }
 
     fn is_across(&self) -> bool {
@@ -188,7 +184,7 @@ impl Case<'_> {
         let over = [Act::LaneChange, Act::Drift, Act::Swerve];
         let comes = |fact: &ActFact| !fact.after_contact && (over.contains(&fact.act) || fact.act == Act::Turn);
         let vehicle = |other: &Other| other.kind.value.is_vehicle() && other.acts.iter().any(comes);
-        let aside = did_any(&self.account.sv, &over);
+        let aside = self.account.sv.did_any(&over);
         let single = self.crash_type == Some(CrashType::SingleVehicle);
         let gave = single && aside && self.account.others.iter().any(vehicle);
         gave.then_some((Role::Responder, "it gave way to another"))
@@ -268,8 +264,8 @@ impl Case<'_> {
     }
 
     fn other_came_across_at_a_junction(&self) -> Said {
-        let own_way = !did_any(&self.account.sv, &[Act::Turn, Act::UTurn, Act::LaneChange, Act::PullOut]);
-        let across = did_any(self.partner, &[Act::Turn, Act::UTurn, Act::PullOut, Act::Cross]);
+        let own_way = !self.account.sv.did_any(&[Act::Turn, Act::UTurn, Act::LaneChange, Act::PullOut]);
+        let across = self.partner.did_any(&[Act::Turn, Act::UTurn, Act::PullOut, Act::Cross]);
         let junction = self.crash_type == Some(CrashType::Intersection);
         (junction && own_way && across).then_some((Role::Responder, "the other turned or came out across its way"))
     }
@@ -282,7 +278,7 @@ impl Case<'_> {
         }
         let moves =
             [Act::LaneChange, Act::Drift, Act::Swerve, Act::PullOut, Act::UTurn, Act::Turn, Act::SetOff, Act::Reverse];
-        let manoeuvres = did_any(&self.account.sv, &moves);
+        let manoeuvres = self.account.sv.did_any(&moves);
         let on_its_way = [Act::Follow, Act::Pass, Act::Turn, Act::Enter, Act::Slow, Act::Leave];
         let crosses = self.is_across() || matches!(self.came_from, Some(Origin::Sidewalk { .. }));
         let own_way = !manoeuvres && !turning(&self.account.sv) && self.turn_by_column().is_none();
@@ -344,13 +340,13 @@ impl Case<'_> {
     fn crossed_from_a_stop(&self) -> Said {
         let (sv, place) = (&self.account.sv, &self.account.place);
         let before: Vec<Act> = sv.acts.iter().filter(|fact| !fact.after_contact).map(|fact| fact.act).collect();
-        let stood = before.iter().position(|act| matches!(act, Act::Stop | Act::Hold));
+        let stood = before.iter().position(|act| act.stands());
         let went = before.iter().rposition(|act| matches!(act, Act::SetOff | Act::Cross | Act::Enter | Act::Turn));
         let feature = |wanted: RoadFeature| place.features.iter().any(|feature| feature.value == wanted);
         let waits = feature(RoadFeature::StopSign)
             || sv.reasons.iter().any(|reason| matches!(reason.value, StandReason::StopSign | StandReason::Yield));
         let crossed = self.is_across() && stood.zip(went).is_some_and(|(stood, went)| stood < went);
-        let other_stops = did_any(self.partner, &[Act::Stop, Act::Hold, Act::SetOff]) || self.ignored_a_stop();
+        let other_stops = self.partner.did_any(&[Act::Stop, Act::Hold, Act::SetOff]) || self.ignored_a_stop();
         (crossed && waits && !feature(RoadFeature::Signal) && !other_stops && !self.other_moves())
             .then_some((Role::Initiator, "it crossed from a stop before one that drove on"))
     }
@@ -406,7 +402,7 @@ impl Case<'_> {
     }
 
     fn both_moved_over(&self) -> Said {
-        let drifts = did_any(&self.account.sv, &[Act::Drift, Act::Swerve]);
+        let drifts = self.account.sv.did_any(&[Act::Drift, Act::Swerve]);
         let other_came_over = told(&self.partner.movement) == Some(Movement::CrossingIntoOpposingLane);
         let head_on = self.crash_type == Some(CrashType::HeadOn) && self.other_moves();
         (drifts && self.striker == Some(Striker::Both) && !other_came_over && !head_on)

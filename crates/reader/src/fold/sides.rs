@@ -3,6 +3,7 @@
 use super::Reading;
 use crate::frame::{Frame, sided};
 use crate::lexicon::{Form, Sense};
+use crate::token::word;
 use crate::world::{Actor, SUBJECT};
 use recrash_model::account::{Act, ActFact, LaneWord, LeftRight};
 use recrash_model::template::Movement;
@@ -43,7 +44,7 @@ fn side_of_cut_in(reading: &Reading<'_>, number: usize) -> Option<LeftRight> {
     let evades = |(other, later): &(usize, &Frame)| {
         *other > number
             && later.sentence <= frame.sentence + 1
-            && matches!(later.act(), Some(Act::Swerve | Act::Drift | Act::LaneChange))
+            && later.act().is_some_and(Act::leaves_line)
             && later.happened()
     };
     reading.before(SUBJECT).find(evades).and_then(|(_, later)| later.side)
@@ -68,11 +69,10 @@ const fn moves_over(act: Act) -> bool {
 /// "put on its left turn signal and began to change lanes": the side for which it had signalled, with nothing done between.
 fn side_signalled(reading: &Reading<'_>, frame: &Frame) -> Option<LeftRight> {
     let (tokens, frames) = (&reading.story.tokens, &reading.story.frames);
-    let word = |at: usize| tokens[at].text.as_str();
     let first = reading.story.sentences[frame.sentence.saturating_sub(1)].first;
-    let lamp = |at: &usize| matches!(word(*at), "signal" | "indicator" | "blinker" | "blinkers" | "indicators");
+    let lamp = |at: &usize| matches!(word(tokens, *at), "signal" | "indicator" | "blinker" | "blinkers" | "indicators");
     let at = (first + 2..frame.first).rev().find(lamp)?;
-    let side = (at - 2..at).find_map(|at| match word(at) {
+    let side = (at - 2..at).find_map(|at| match word(tokens, at) {
         "left" => Some(LeftRight::Left),
         "right" => Some(LeftRight::Right),
         _ => None,
@@ -153,7 +153,7 @@ pub(super) fn back_to_the_middle(
     let words = &reading.story.tokens[frame.first..frame.end];
     let has = |word: &str| words.iter().any(|token| token.text.starts_with(word));
     let middle = has("recenter") || (has("center") || has("middle")) && !has("line") && !has("cross");
-    let aside = |fact: &&ActFact| matches!(fact.act, Act::Drift | Act::LaneChange | Act::Swerve);
+    let aside = |fact: &&ActFact| fact.act.leaves_line();
     let last = before.iter().rfind(aside)?;
     last.side.map(LeftRight::other).filter(|_| middle && act == Act::Drift)
 }
@@ -197,14 +197,15 @@ pub(super) fn lane_entered(reading: &Reading<'_>, frame: &Frame) -> Option<(usiz
         "second",
         "third",
     ];
-    let word = |at: usize| reading.story.tokens[at].text.as_str();
     let end = reading.story.sentences[frame.sentence].end.min(frame.first + LANE_WITHIN);
-    let stops =
-        |at: &usize| matches!(word(*at), "," | "and" | "intersection" | "junction" | "from" | "at" | "of" | "as");
-    let lane = (frame.first + 1..end).take_while(|at| !stops(at)).find(|&at| word(at) == "lane")?;
-    let partly = frame.first.checked_sub(1).is_some_and(|at| matches!(word(at), "partially" | "partly"));
+    let stops = |at: &usize| {
+        matches!(reading.story.word(*at), "," | "and" | "intersection" | "junction" | "from" | "at" | "of" | "as")
+    };
+    let lane = (frame.first + 1..end).take_while(|at| !stops(at)).find(|&at| reading.story.word(at) == "lane")?;
+    let partly = frame.first.checked_sub(1).is_some_and(|at| matches!(reading.story.word(at), "partially" | "partly"));
     // "entered the AV's lane".
-    let named = word(lane - 1) == "'s" || (frame.first..lane).any(|at| NAMES.contains(&word(at)));
+    let named =
+        reading.story.word(lane - 1) == "'s" || (frame.first..lane).any(|at| NAMES.contains(&reading.story.word(at)));
     (named && !partly).then_some((frame.first, lane))
 }
 
@@ -215,14 +216,13 @@ const LANE_WITHIN: usize = 10;
 fn side_of_lane_entered(reading: &Reading<'_>, frame: &Frame) -> Option<LeftRight> {
     let (first, lane) = lane_entered(reading, frame)?;
     let end = reading.story.sentences[frame.sentence].end.min(lane + 5);
-    let word = |at: usize| reading.story.tokens[at].text.as_str();
-    let (at, side) = (first..end).find_map(|at| match word(at) {
+    let (at, side) = (first..end).find_map(|at| match reading.story.word(at) {
         "left" | "leftmost" => Some((at, LeftRight::Left)),
         "right" | "rightmost" | "bike" | "bicycle" | "bus" => Some((at, LeftRight::Right)),
         _ => None,
     })?;
     // "entered the AV's lane from the right": to the left.
-    let from = at > lane + 2 && word(at - 2) == "from";
+    let from = at > lane + 2 && reading.story.word(at - 2) == "from";
     Some(if from { side.other() } else { side })
 }
 

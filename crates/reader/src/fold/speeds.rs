@@ -3,7 +3,7 @@
 use super::Reading;
 use crate::frame::Frame;
 use crate::lexicon::{Adjective, Form, Meaning, Sense};
-use crate::token::{Sentence, Token, TokenKind};
+use crate::token::{Sentence, Token, TokenKind, word};
 use crate::world::{Actor, SUBJECT, same_kind};
 use recrash_model::account::{Act, Fact, Kind, Speed, SpeedMeaning};
 use recrash_model::record::MPS_PER_MPH;
@@ -37,17 +37,17 @@ fn at_that_moment(reading: &Reading<'_>, number: usize, at: usize) -> bool {
 /// "at the time of impact it was doing 30 mph", "was doing 30 mph at the moment of contact", "the crash signal was logged at 30 mph": no
 /// other speed stands in between.
 fn at_impact(tokens: &[Token], (first, end): (usize, usize), at: usize) -> bool {
-    let word = |at: usize| tokens[at].text.as_str();
-    let speed = |at: &usize| word(*at).ends_with("mph");
-    let crash = |at: usize| matches!(word(at), "impact" | "crash" | "collision" | "contact");
+    let speed = |at: &usize| word(tokens, *at).ends_with("mph");
+    // An incident or an accident lasts longer than the touch.
+    let crash = |at: usize| matches!(word(tokens, at), "impact" | "crash" | "collision" | "contact");
     let mark = |at: usize| {
-        let signal = at > first && crash(at - 1) && matches!(word(at), "signal" | "speed");
-        let time = |at: usize| matches!(word(at), "time" | "moment" | "instant" | "point");
+        let signal = at > first && crash(at - 1) && matches!(word(tokens, at), "signal" | "speed");
+        let time = |at: usize| matches!(word(tokens, at), "time" | "moment" | "instant" | "point");
         signal || crash(at) && (first.max(at.saturating_sub(3))..at).any(time)
     };
     let before = || (first..at).rev().take_while(|at| !speed(at)).any(mark);
     let behind = || (at + 2..end.min(at + 9)).take_while(|at| !speed(at)).any(mark);
-    let earlier = (first..end).any(|at| matches!(word(at), "before" | "prior"));
+    let earlier = (first..end).any(|at| matches!(word(tokens, at), "before" | "prior"));
     !earlier && (before() || behind())
 }
 
@@ -118,9 +118,9 @@ pub(super) fn is_of_last_contact(reading: &Reading<'_>, sentence: usize) -> bool
 
 /// Whether somebody braked or stopped behind this frame, before the contact.
 fn slows_later(reading: &Reading<'_>, actor: Actor, number: usize) -> bool {
-    reading.before(actor).any(|(later, frame)| {
-        later > number && frame.happened() && matches!(frame.act(), Some(Act::Slow | Act::Stop | Act::Hold))
-    })
+    reading
+        .before(actor)
+        .any(|(later, frame)| later > number && frame.happened() && frame.act().is_some_and(Act::slows))
 }
 
 /// Who is meant by a name, of which these words tell: the subject vehicle, or the partner of a kind that fits.
@@ -156,10 +156,10 @@ const NAME: usize = 3;
 
 /// "the two collided, the AV at 19 mph by then": whose it is by a noun right before it, behind a comma.
 fn owner_at(reading: &Reading<'_>, first: usize, at: usize) -> Option<Actor> {
-    let word = |at: usize| reading.story.tokens[at].text.as_str();
-    let about = |at: &usize| matches!(word(*at), "about" | "approximately" | "around" | "roughly" | "only");
-    let to = (first..at).rev().find(|at| !about(at)).filter(|to| word(*to) == "at")?;
-    let begins = (first.max(to.saturating_sub(NAME + 2))..to).rev().find(|at| word(*at) == ",")?;
+    let about =
+        |at: &usize| matches!(reading.story.word(*at), "about" | "approximately" | "around" | "roughly" | "only");
+    let to = (first..at).rev().find(|at| !about(at)).filter(|to| reading.story.word(*to) == "at")?;
+    let begins = (first.max(to.saturating_sub(NAME + 2))..to).rev().find(|at| reading.story.word(*at) == ",")?;
     owner_named(reading, named_before(reading, begins + 1, to)?)
 }
 
@@ -167,22 +167,22 @@ fn owner_at(reading: &Reading<'_>, first: usize, at: usize) -> Option<Actor> {
 /// names the contact.
 fn owner_of_speed(reading: &Reading<'_>, first: usize, at: usize) -> Option<(Actor, bool)> {
     let tokens = &reading.story.tokens;
-    let word = |at: usize| tokens[at].text.as_str();
     let from = first.max(at.saturating_sub(OWNER_WITHIN));
-    let struck = |at: usize| word(at) == "when" && matches!(word(at + 1), "struck" | "hit");
+    let struck = |at: usize| word(tokens, at) == "when" && matches!(word(tokens, at + 1), "struck" | "hit");
     let ends = |at: &usize| {
-        matches!(word(*at), "," | "and" | "while" | "when" | "as") && !struck(*at) || word(*at).ends_with("mph")
+        matches!(word(tokens, *at), "," | "and" | "while" | "when" | "as") && !struck(*at)
+            || word(tokens, *at).ends_with("mph")
     };
-    let owned = |at: usize| at > first && word(at) == "speed" && word(at - 1) == "'s" && struck(at + 1);
+    let owned = |at: usize| at > first && word(tokens, at) == "speed" && word(tokens, at - 1) == "'s" && struck(at + 1);
     let noun = (from..at).rev().take_while(|at| !ends(at)).find(|at| {
-        let speed = word(*at) == "speed" && word(at + 1) == "of";
-        let impact = matches!(word(*at), "impact" | "contact" | "collision") && word(at + 1) == "from";
+        let speed = word(tokens, *at) == "speed" && word(tokens, at + 1) == "of";
+        let impact = matches!(word(tokens, *at), "impact" | "contact" | "collision") && word(tokens, at + 1) == "from";
         speed || impact || owned(*at)
     })?;
     if owned(noun) {
         return Some((owner_named(reading, named_before(reading, first, noun - 1)?)?, true));
     }
-    let article = usize::from(crate::chunk::is_determiner(word(noun + 2)));
+    let article = usize::from(crate::chunk::is_determiner(word(tokens, noun + 2)));
     let lexicon = crate::lexicon::Lexicon::get();
     let named = lexicon.longest(tokens, noun + 2 + article, |meaning| {
         matches!(meaning, Meaning::Subject | Meaning::Company | Meaning::Kind(_) | Meaning::Adjective(_))
@@ -197,7 +197,8 @@ fn owner_of_speed(reading: &Reading<'_>, first: usize, at: usize) -> Option<(Act
     let when_struck = (noun..at).any(struck);
     // "upon impact from the van the AV was traveling at 20 mph": the verb says whose.
     let within = |frame: &Frame| frame.first > noun && frame.first < at && frame.who.is_some_and(|who| who != owner);
-    (when_struck || !reading.story.frames.iter().any(within)).then_some((owner, word(noun) != "speed" || when_struck))
+    (when_struck || !reading.story.frames.iter().any(within))
+        .then_some((owner, word(tokens, noun) != "speed" || when_struck))
 }
 
 /// Whose speed it is stands so near before the number. [tokens]
@@ -224,7 +225,7 @@ pub(super) fn speeds(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<Speed>> {
     let mut all = Vec::new();
     for (at, token) in tokens.iter().enumerate() {
         let joined = token.text.strip_suffix("mph").and_then(|number| number.parse::<f64>().ok());
-        let unit = tokens.get(at + 1).map_or("", |next| next.text.as_str());
+        let unit = word(tokens, at + 1);
         // "for 2 miles" is no speed.
         let an_hour =
             || tokens.get(at + 2).is_some_and(|next| matches!(next.text.as_str(), "per" | "an" | "hour" | "/"));

@@ -4,6 +4,7 @@ use super::Reading;
 use crate::chunk::Piece;
 use crate::frame::{Frame, zone_of};
 use crate::lexicon::{Relation, Sense};
+use crate::token::word;
 use crate::world::{Actor, SUBJECT};
 use recrash_model::account::{Act, EarlierTouch, Fact, Kind};
 use recrash_model::zones::ContactZone;
@@ -119,7 +120,6 @@ const PARTS: [&str; 11] =
 /// The tokens of "the left side of its trailer", where that touches.
 fn of_trailer(reading: &Reading<'_>, actor: Actor, frame: &Frame) -> Option<(usize, usize)> {
     let sentence = reading.story.sentences[frame.sentence];
-    let word = |at: usize| reading.story.tokens[at].text.as_str();
     let (from, to) = if frame.who == Some(actor) {
         (frame.first.saturating_sub(2 * OF_TRAILER_WITHIN).max(sentence.first), frame.first)
     } else if frame.object == Some(actor) {
@@ -129,12 +129,13 @@ fn of_trailer(reading: &Reading<'_>, actor: Actor, frame: &Frame) -> Option<(usi
     };
     // What stands behind another clause is told of that.
     let from = (from..to)
-        .rfind(|&at| matches!(word(at), "," | ";" | "and" | "when" | "as" | "while"))
+        .rfind(|&at| matches!(reading.story.word(at), "," | ";" | "and" | "when" | "as" | "while"))
         .map_or(from, |at| at + 1);
-    let trailer = (from..to).rfind(|&at| word(at) == "trailer")?;
-    let part = |at: &usize| PARTS.contains(&word(*at));
+    let trailer = (from..to).rfind(|&at| reading.story.word(at) == "trailer")?;
+    let part = |at: &usize| PARTS.contains(&reading.story.word(*at));
     let first = (trailer.saturating_sub(OF_TRAILER_WITHIN).max(from)..trailer).find(part)?;
-    let article = first.checked_sub(1).filter(|at| *at >= from && matches!(word(*at), "the" | "its" | "a"));
+    let article =
+        first.checked_sub(1).filter(|at| *at >= from && matches!(reading.story.word(*at), "the" | "its" | "a"));
     (to - trailer <= OF_TRAILER_WITHIN).then(|| (article.unwrap_or(first), trailer + 1))
 }
 
@@ -217,7 +218,7 @@ fn told_besides(reading: &Reading<'_>, actor: Actor, first: usize, alone: bool) 
         // "It made contact with a curb. This caused damage to its front right tire."
         let next = frame.sentence == crash.sentence + 1 && {
             let begins = &reading.story.tokens[reading.story.sentences[frame.sentence].first..];
-            let word = |at: usize| begins.get(at).map_or("", |token| token.text.as_str());
+            let word = |at: usize| word(begins, at);
             word(0) == "this" || word(0) == "the" && matches!(word(1), "contact" | "collision" | "impact")
         };
         let here = frame.sentence == crash.sentence || next;

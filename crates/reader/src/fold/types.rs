@@ -26,7 +26,7 @@ pub(super) fn cp_state(account: &Account) -> Option<ContactState> {
 /// Whether a turn of this side is under way at the contact: told last but for slowing and stopping.
 pub(crate) fn turning(party: &Party) -> bool {
     let before: Vec<_> = party.acts.iter().filter(|fact| !fact.after_contact).collect();
-    let Some(last) = before.iter().rposition(|fact| matches!(fact.act, Act::Turn | Act::UTurn)) else { return false };
+    let Some(last) = before.iter().rposition(|fact| fact.act.turns()) else { return false };
     let later = &before[last + 1..];
     let done = match &before[last].source {
         recrash_model::account::Source::Words { text, .. } => {

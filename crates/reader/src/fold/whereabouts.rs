@@ -112,7 +112,7 @@ fn on_cross_street(clues: &Clues<'_>) -> Option<Fact<Origin>> {
 /// "a bus in the leftmost lane stopped, as there was no room ahead", of one in the rightmost lane: beside it, whatever else is ahead.
 fn stands_in_other_lane(clues: &Clues<'_>, place: Option<Origin>) -> Option<Fact<Origin>> {
     let (reading, actor) = (clues.reading, clues.actor);
-    let stands = |frame: &Frame| matches!(frame.act(), Some(Act::Hold | Act::Stop));
+    let stands = |frame: &Frame| frame.act().is_some_and(Act::stands);
     let drives = |frame: &Frame| matches!(frame.act(), Some(Act::Follow | Act::LaneChange | Act::Turn | Act::PullOut));
     let any = |is: &dyn Fn(&Frame) -> bool| reading.before(actor).any(|(_, frame)| is(frame));
     let still = any(&stands) && !any(&drives);
@@ -171,7 +171,7 @@ fn stops_in_its_lane(clues: &Clues<'_>) -> Option<Fact<Origin>> {
     let stays = !reading.did(SUBJECT, Act::LaneChange) && !reading.did(SUBJECT, Act::Turn);
     let stops = reading.did(actor, Act::Stop) || reading.did(actor, Act::Hold);
     let reacts = |(_, frame): (usize, &Frame)| {
-        let slows = matches!(frame.act(), Some(Act::Stop | Act::Slow | Act::Hold));
+        let slows = frame.act().is_some_and(Act::slows);
         frame.object == Some(actor) && (slows || matches!(frame.sense, Sense::Yield | Sense::Approach))
     };
     let met = own == lane && stays && stops && reading.before(SUBJECT).any(reacts);
@@ -191,7 +191,7 @@ fn queue_waited_for(clues: &Clues<'_>) -> Option<Fact<Origin>> {
     let tokens = &reading.story.tokens;
     let elsewhere = tokens[from..(end + ACROSS_WITHIN).min(tokens.len())].iter().any(across);
     let waits = |(_, frame): (usize, &Frame)| {
-        let slows = frame.sense == Sense::Yield || matches!(frame.act(), Some(Act::Slow | Act::Stop | Act::Hold));
+        let slows = frame.sense == Sense::Yield || frame.act().is_some_and(Act::slows);
         frame.object == Some(actor) && slows && frame.happened()
     };
     // "was pulling out of a driveway", "waited at a stop sign", "to turn left": those cross its way.
@@ -276,7 +276,7 @@ fn is_queue_met(reading: &Reading<'_>, number: usize) -> bool {
 fn on_oncoming_side(clues: &Clues<'_>) -> Option<Fact<Origin>> {
     let (reading, tokens) = (clues.reading, &clues.reading.story.tokens);
     let (own, ..) = reading.story.world.actors[SUBJECT].heading?;
-    let stands = |frame: &Frame| matches!(frame.act(), Some(Act::Hold | Act::Stop));
+    let stands = |frame: &Frame| frame.act().is_some_and(Act::stands);
     reading.before(clues.actor).filter(|(_, frame)| stands(frame)).find_map(|(number, _)| {
         let (first, end) = reading.window(number);
         let at =
@@ -308,14 +308,14 @@ fn stands_in_oncoming_lane(clues: &Clues<'_>) -> Option<Fact<Origin>> {
     let (reading, actor) = (clues.reading, clues.actor);
     let (lane, first, end) = reading.story.world.actors[actor].lane?;
     let acts = || reading.before(actor).filter_map(|(_, frame)| frame.act());
-    let stands = acts().next().is_some() && acts().all(|act| matches!(act, Act::Hold | Act::Stop));
+    let stands = acts().next().is_some() && acts().all(|act| act.stands());
     (lane == LaneWord::Opposing && stands).then(|| reading.told(Origin::Opposite, first, end))
 }
 
 /// "traffic ahead braked for a stalled bus": that is ahead too.
 fn stopped_for(clues: &Clues<'_>) -> Option<Fact<Origin>> {
     let (reading, actor) = (clues.reading, clues.actor);
-    let slows = |frame: &Frame| matches!(frame.act(), Some(Act::Slow | Act::Stop | Act::Hold)) && frame.happened();
+    let slows = |frame: &Frame| frame.act().is_some_and(Act::slows) && frame.happened();
     let for_it = |frame: &&Frame| frame.object == Some(actor) && slows(frame);
     let ahead = |frame: &&Frame| {
         let who = frame.who.filter(|who| ![SUBJECT, actor].contains(who));
@@ -344,9 +344,9 @@ fn named_with_another(clues: &Clues<'_>) -> Option<Fact<Origin>> {
     let (reading, actor) = (clues.reading, clues.actor);
     let actors = &reading.story.world.actors;
     let (first, end) = actors[actor].kind_tokens?;
-    let word = |at: usize| reading.story.tokens.get(at).map_or("", |token| token.text.as_str());
-    let article = usize::from(first > 0 && matches!(word(first - 1), "a" | "an" | "the" | "two" | "another"));
-    let and = first.checked_sub(1 + article).filter(|at| word(*at) == "and")?;
+    let article =
+        usize::from(first > 0 && matches!(reading.story.word(first - 1), "a" | "an" | "the" | "two" | "another"));
+    let and = first.checked_sub(1 + article).filter(|at| reading.story.word(*at) == "and")?;
     let ahead = |other: &usize| {
         let before = actors[*other].kind_tokens.is_some_and(|(_, end)| end == and);
         before && first_relation(&Clues { reading, actor: *other }) == Some(Relation::Ahead)
@@ -438,14 +438,14 @@ const WAY_WORDS: usize = 12;
 fn at_side_of_road(clues: &Clues<'_>) -> Option<Fact<Origin>> {
     let (reading, actor) = (clues.reading, clues.actor);
     let own = reading.story.world.actors[SUBJECT].heading.map(|(compass, ..)| compass);
-    let stands = |act: Option<Act>| matches!(act, Some(Act::Hold | Act::Stop));
+    let stands = |act: Option<Act>| act.is_some_and(Act::stands);
     let walks = reading.story.world.actors[actor].kind.is_some_and(|kind| kind.group() == KindGroup::OnFoot);
     let turned = reading.did(SUBJECT, Act::Turn) || reading.did(SUBJECT, Act::UTurn);
     // "a van parked facing east on the north curb".
     let drives = reading.story.world.actors[actor].kind.is_some_and(Kind::is_vehicle);
     let parked = drives && reading.before(actor).any(|(_, frame)| frame.sense == Sense::Parked);
     // "Two vans stood at the curb on the north side of the street".
-    let still = |frame: &Frame| matches!(frame.act(), Some(Act::Hold | Act::Stop | Act::Park));
+    let still = |frame: &Frame| frame.act().is_some_and(Act::rests);
     let parked = parked || drives && reading.before(actor).all(|(_, frame)| still(frame)) && at_curb(reading, actor);
     if !(walks || parked) || turned {
         return None;
@@ -468,9 +468,8 @@ fn at_side_of_road(clues: &Clues<'_>) -> Option<Fact<Origin>> {
 /// "a cord held by a man on the west sidewalk": where who is named so stands, and the token that says it.
 fn side_behind_its_name(reading: &Reading<'_>, actor: Actor, own: Option<Compass>) -> Option<(LeftRight, usize)> {
     let (_, end) = reading.story.world.actors[actor].kind_tokens?;
-    let word = |at: usize| reading.story.tokens.get(at).map_or("", |token| token.text.as_str());
-    let at = end + 1 + usize::from(word(end + 1) == "the");
-    let stands = matches!(word(end), "on" | "at" | "along");
+    let at = end + 1 + usize::from(reading.story.word(end + 1) == "the");
+    let stands = matches!(reading.story.word(end), "on" | "at" | "along");
     side_named_at(reading, at, own).filter(|_| stands).map(|side| (side, at))
 }
 
@@ -506,15 +505,16 @@ fn queue_of(reading: &Reading<'_>, actor: Actor) -> Option<(usize, usize)> {
     let story = &reading.story;
     let (first, end) = story.world.actors[actor].kind_tokens?;
     let from = first.checked_sub(2)?;
-    let word = |at: usize| story.tokens.get(at).map_or("", |token| token.text.as_str());
-    let queue = ["queue", "line"].contains(&word(from)) && word(from + 1) == "of";
+    let queue = ["queue", "line"].contains(&story.word(from)) && story.word(from + 1) == "of";
     // "in queued traffic", "in a traffic queue".
-    let traffic = word(end - 1) == "traffic"
-        && (matches!(word(first - 1), "in" | "behind") || word(first) == "a" && word(from + 1) == "in");
-    let stands = (first..end).any(|at| matches!(word(at), "queued" | "backed" | "stopped" | "standing" | "stationary"));
-    let jam = matches!(word(end), "queue" | "jam" | "backup");
+    let traffic = story.word(end - 1) == "traffic"
+        && (matches!(story.word(first - 1), "in" | "behind")
+            || story.word(first) == "a" && story.word(from + 1) == "in");
+    let stands =
+        (first..end).any(|at| matches!(story.word(at), "queued" | "backed" | "stopped" | "standing" | "stationary"));
+    let jam = matches!(story.word(end), "queue" | "jam" | "backup");
     // "stopped in traffic".
-    let plain = end == first + 1 && word(first - 1) == "in";
+    let plain = end == first + 1 && story.word(first - 1) == "in";
     (queue || traffic && (stands || jam || plain)).then_some((from, end))
 }
 
@@ -522,23 +522,25 @@ fn queue_of(reading: &Reading<'_>, actor: Actor) -> Option<(usize, usize)> {
 fn in_that_queue(clues: &Clues<'_>) -> Option<Fact<Origin>> {
     let (reading, actor) = (clues.reading, clues.actor);
     let known = &reading.story.world.actors[actor];
-    let word = |at: usize| reading.story.tokens[at].text.as_str();
     let queues = |(number, _): &(usize, &Frame)| {
         let (first, end) = reading.window(*number);
-        (first..end).any(|at| word(at).starts_with("queue") || matches!(word(at), "lined" | "backed" | "standstill"))
+        (first..end).any(|at| {
+            reading.story.word(at).starts_with("queue")
+                || matches!(reading.story.word(at), "lined" | "backed" | "standstill")
+        })
     };
     let (_, queue) = reading.before(actor).find(queues).filter(|_| known.several)?;
     if !known.kind.is_some_and(Kind::is_vehicle) {
         return None;
     }
-    let stands = |frame: &Frame| matches!(frame.act(), Some(Act::Hold | Act::Stop)) && frame.happened();
+    let stands = |frame: &Frame| frame.act().is_some_and(Act::stands) && frame.happened();
     reading.before(SUBJECT).filter(|(_, frame)| stands(frame)).find_map(|(number, _)| {
         let (first, end) = reading.window(number);
-        (first..end.saturating_sub(1)).filter(|at| word(*at) == "in").find_map(|at| {
-            let line = matches!(word(at + 1), "that" | "the" | "this")
+        (first..end.saturating_sub(1)).filter(|at| reading.story.word(*at) == "in").find_map(|at| {
+            let line = matches!(reading.story.word(at + 1), "that" | "the" | "this")
                 && at + 2 < end
-                && matches!(word(at + 2), "queue" | "line");
-            let it = word(at + 1) == "it" && reading.story.frames[number].sentence == queue.sentence;
+                && matches!(reading.story.word(at + 2), "queue" | "line");
+            let it = reading.story.word(at + 1) == "it" && reading.story.frames[number].sentence == queue.sentence;
             (line || it).then(|| reading.told(Origin::Ahead, at, at + if line { 3 } else { 2 }))
         })
     })
@@ -549,7 +551,7 @@ fn held_in(reading: &Reading<'_>, who: Actor, from: usize, end: usize) -> bool {
     let story = &reading.story;
     let stands = |frame: &Frame| {
         let sentence = story.sentences[frame.sentence];
-        let stands = matches!(frame.act(), Some(Act::Hold | Act::Stop)) && frame.who == Some(who);
+        let stands = frame.act().is_some_and(Act::stands) && frame.who == Some(who);
         stands
             && frame.first < from + 2
             && end <= sentence.end
@@ -660,11 +662,11 @@ fn faces_its_way(clues: &Clues<'_>) -> Option<Fact<Origin>> {
     let ((own, ..), (other, first, end)) = (reading.story.world.actors[SUBJECT].heading?, known.heading?);
     let stays = !reading.did(SUBJECT, Act::Turn) && !reading.did(SUBJECT, Act::LaneChange);
     let stands = |frame: &Frame| {
-        frame.sense == Sense::Face || frame.sense != Sense::Parked && matches!(frame.act(), Some(Act::Hold | Act::Stop))
+        frame.sense == Sense::Face || frame.sense != Sense::Parked && frame.act().is_some_and(Act::stands)
     };
     let only_stands = !known.several && reading.before(actor).all(|(_, frame)| stands(frame));
     let met = |(_, frame): (usize, &Frame)| {
-        let slows = frame.sense == Sense::Yield || matches!(frame.act(), Some(Act::Slow | Act::Stop | Act::Hold));
+        let slows = frame.sense == Sense::Yield || frame.act().is_some_and(Act::slows);
         frame.object == Some(actor) && slows && frame.happened()
     };
     let ahead = known.kind.is_some_and(Kind::is_vehicle) && own == other && stays && only_stands;

@@ -182,7 +182,7 @@ fn begins_to_pass(frames: &[Frame], number: usize, tokens: &[Token]) -> bool {
     let before = frames[..number].iter().rev().find(|other| {
         other.who == frame.who && other.act().is_some() && other.happened() && other.progress == Progress::Real
     });
-    begins && before.is_some_and(|other| matches!(other.act(), Some(Act::Hold | Act::Stop)) && !other.aside)
+    begins && before.is_some_and(|other| other.act().is_some_and(Act::stands) && !other.aside)
 }
 
 /// "emerged on the right from behind a stopped bus": into view, and from no kerb.
@@ -257,7 +257,7 @@ fn pulls_out_to_a_lane(frames: &[Frame], number: usize, tokens: &[Token], senten
     };
     let own = |before: &&Frame| before.who == frame.who && before.act().is_some();
     let Some(before) = frames[..number].iter().rposition(|before| own(&before)) else { return false };
-    let stood = matches!(frames[before].act(), Some(Act::Stop | Act::Hold)) && frames[before].happened();
+    let stood = frames[before].act().is_some_and(Act::stands) && frames[before].happened();
     let parked = frames[..number].iter().any(|before| before.who == frame.who && before.sense == Sense::Parked);
     let placed = frames[before].relations.iter().any(|(relation, _)| matches!(relation, Relation::Behind | Relation::Ahead))
             || text(frames[before].first, frames[before].end + 5).any(|word| word == "lane")
@@ -277,7 +277,7 @@ fn headed_as_it_stands(frames: &[Frame], number: usize, words: &[&str]) -> bool 
         .filter(|before| (before.sentence, before.clause, before.who) == (frame.sentence, frame.clause, frame.who));
     frame.act() == Some(Act::Follow)
         && words.first() == Some(&"headed")
-        && before.is_some_and(|before| matches!(before.act(), Some(Act::Hold | Act::Stop)) && before.happened())
+        && before.is_some_and(|before| before.act().is_some_and(Act::stands) && before.happened())
 }
 
 /// "had been waiting at the stop sign and now pulled out": sets off, and from no kerb.
@@ -290,7 +290,7 @@ fn leaves_a_control(frames: &[Frame], number: usize, tokens: &[Token], sentences
     else {
         return false;
     };
-    let stood = matches!(frames[before].act(), Some(Act::Stop | Act::Hold)) && frames[before].sense != Sense::Parked;
+    let stood = frames[before].act().is_some_and(Act::stands) && frames[before].sense != Sense::Parked;
     let end = behind(frames, before, sentences);
     stood
         && frames[before].happened()
@@ -307,7 +307,7 @@ fn leaves_a_queue(frames: &[Frame], number: usize, tokens: &[Token], sentences: 
     let away = says(&["away"]) && !says(&["from", "curb", "kerb", "parking", "stall", "driveway", "lot", "side"]);
     let before = &frames[..number];
     let waits = |other: &Frame| {
-        let stands = matches!(other.act(), Some(Act::Stop | Act::Hold)) && other.happened();
+        let stands = other.act().is_some_and(Act::stands) && other.happened();
         let behind = |(relation, to): &(Relation, Option<usize>)| *relation == Relation::Behind && *to == frame.who;
         // "behind a truck at the side of the street": out of there.
         let aside = ["curb", "kerb", "parking", "side", "shoulder", "parked", "stall", "driveway", "lot"];

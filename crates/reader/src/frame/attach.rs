@@ -4,6 +4,7 @@ use super::parser::{Carry, Parser};
 use super::sided;
 use crate::chunk::{Chunk, Piece, Placed, is_along_a_side};
 use crate::lexicon::{Form, Part, Relation, Sense};
+use crate::token::word;
 use crate::world::{Actor, SUBJECT};
 use recrash_model::account::{Act, Kind, LeftRight};
 
@@ -414,16 +415,16 @@ impl Parser<'_> {
     fn leaves_lane(&mut self, side: Option<LeftRight>, placed: &Placed, carry: &Carry) {
         let (Some(side), Some(frame), true) = (side, carry.frame, self.is_from_a_lane(placed)) else { return };
         let taken = &mut self.frames[frame];
-        if matches!(taken.act(), Some(Act::LaneChange | Act::Drift | Act::Swerve)) && taken.side.is_none() {
+        if taken.act().is_some_and(Act::leaves_line) && taken.side.is_none() {
             taken.side = Some(side.other());
         }
     }
 
     /// "a line of cars".
     fn is_row(&self, at: usize) -> bool {
-        let word = |at: usize| self.tokens.get(at).map_or("", |token| token.text.as_str());
-        let at = at + usize::from(matches!(word(at), "a" | "the"));
-        matches!(word(at), "line" | "row" | "queue" | "column" | "string") && word(at + 1) == "of"
+        let at = at + usize::from(matches!(word(self.tokens, at), "a" | "the"));
+        matches!(word(self.tokens, at), "line" | "row" | "queue" | "column" | "string")
+            && word(self.tokens, at + 1) == "of"
     }
 
     /// Whether a noun that ends here is one of "a line of cars", "the queue of stopped vehicles".

@@ -90,7 +90,7 @@ fn of_vehicle(frames: &[Frame], number: usize, world: &World) -> Option<Actor> {
     };
     let named = frames[number].object.filter(|actor| vehicle(*actor));
     named.or_else(|| {
-        let stood = |frame: &&Frame| frame.sense == Sense::Parked || matches!(frame.act(), Some(Act::Hold | Act::Stop));
+        let stood = |frame: &&Frame| frame.sense == Sense::Parked || frame.act().is_some_and(Act::stands);
         frames[..number].iter().rev().filter(stood).filter_map(|frame| frame.who).find(|actor| vehicle(*actor))
     })
 }

@@ -5,14 +5,14 @@ use super::parser::{Carry, Parser};
 use super::row::{Spoken, single};
 use crate::chunk::{Chunk, Noun};
 use crate::lexicon::{Form, Occupant, Sense};
-use crate::token::Token;
+use crate::token::{Token, word};
 use crate::world::SUBJECT;
 use recrash_model::account::{Act, Kind, KindGroup};
 
 /// "the lanes were closed", "a gate that was closed": it had been, and nothing comes down.
 pub(super) fn is_closed(parser: &Parser<'_>, verb: &Spoken<'_>, carry: &Carry) -> Option<Sense> {
     let closed = verb.sense == Sense::Act(Act::Fall) && verb.word(parser) == "closed" && single(verb.placed());
-    let next = parser.tokens.get(verb.placed().end).map_or("", |token| token.text.as_str());
+    let next = word(parser.tokens, verb.placed().end);
     let comes_down = matches!(next, "by" | "on" | "onto" | "upon" | "as" | "while" | "behind" | "against");
     // "It closed its doors."
     let behind = parser.tokens[verb.placed().end..].iter().take(5).map(|token| token.text.as_str());
@@ -71,26 +71,25 @@ pub(super) fn drops_into_a_hole(parser: &Parser<'_>, verb: &Spoken<'_>, carry: &
 /// "took off their seatbelts", "turned on its hazard lights": nobody moved.
 pub(super) fn handles_a_thing(parser: &Parser<'_>, verb: &Spoken<'_>, carry: &Carry) -> Option<Sense> {
     let end = verb.placed().end;
-    let word = |at: usize| parser.tokens.get(at).map_or("", |token| token.text.as_str());
-    let own = |at: usize| matches!(word(at), "its" | "his" | "her" | "their" | "the");
+    let own = |at: usize| matches!(word(parser.tokens, at), "its" | "his" | "her" | "their" | "the");
     let lamp = |at: usize| {
         ["light", "signal", "lamp", "flasher", "blinker", "indicator", "siren"]
             .iter()
-            .any(|stem| word(at).starts_with(stem))
+            .any(|stem| word(parser.tokens, at).starts_with(stem))
     };
     let takes = verb.sense == Sense::Act(Act::SetOff)
-        && word(end - 1) == "off"
+        && word(parser.tokens, end - 1) == "off"
         && ["tak", "took"].iter().any(|stem| verb.word(parser).starts_with(stem));
     let turning = matches!(verb.sense, Sense::Act(Act::Turn) | Sense::Sided(Act::Turn, _))
         && verb.word(parser).starts_with("turn");
-    let turns = turning && matches!(word(end), "on" | "off") && own(end + 1);
+    let turns = turning && matches!(word(parser.tokens, end), "on" | "off") && own(end + 1);
     // "turned its left blinker on", "turned its sensors toward it".
     let first = verb.placed().first;
     let thing = |at: usize| {
         lamp(at)
             || ["hazard", "headlamp", "wiper", "engine", "attention", "sensor", "head"]
                 .iter()
-                .any(|stem| word(at).starts_with(stem))
+                .any(|stem| word(parser.tokens, at).starts_with(stem))
     };
     let its = turning && own(first + 1) && (first + 2..first + 6).any(thing);
     // "The front wheels of a van were turned to the left."
@@ -122,7 +121,7 @@ pub(super) fn does_not_fall(parser: &Parser<'_>, verb: &Spoken<'_>, carry: &Carr
     let drives = subject.actor == SUBJECT || known.is_some_and(Kind::is_vehicle);
     let word = verb.word(parser);
     let end = verb.placed().end;
-    let next = parser.tokens.get(end).map_or("", |token| token.text.as_str());
+    let next = crate::token::word(parser.tokens, end);
     if !drives || subject.piece.is_some() {
         return None;
     }
@@ -197,11 +196,14 @@ pub(super) fn stands_as_it_rides(parser: &Parser<'_>, verb: &Spoken<'_>, carry: 
             || matches!(kind, Kind::ScooterRider | Kind::Skateboarder)
     });
     let placed = verb.placed();
-    let word = |at: usize| parser.tokens.get(at).map_or("", |token| token.text.as_str());
-    let upright = placed.end == placed.first + 1 && word(placed.first) == "standing";
-    let pedals = word(placed.end) == "on"
-        && (1..4).any(|on| matches!(word(placed.end + on), "pedals" | "pegs" | "footpegs" | "deck" | "board"));
-    let up = matches!(word(placed.end), "," | "up" | "upright") && placed.first > 0 && word(placed.first - 1) == ",";
+    let upright = placed.end == placed.first + 1 && word(parser.tokens, placed.first) == "standing";
+    let pedals = word(parser.tokens, placed.end) == "on"
+        && (1..4).any(|on| {
+            matches!(word(parser.tokens, placed.end + on), "pedals" | "pegs" | "footpegs" | "deck" | "board")
+        });
+    let up = matches!(word(parser.tokens, placed.end), "," | "up" | "upright")
+        && placed.first > 0
+        && word(parser.tokens, placed.first - 1) == ",";
     (rides && upright && (pedals || up)).then_some(Sense::Other)
 }
 

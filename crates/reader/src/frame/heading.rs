@@ -4,6 +4,7 @@ use super::Frame;
 use super::parser::{Carry, Parser};
 use crate::chunk::Placed;
 use crate::lexicon::{Form, Part};
+use crate::token::word;
 use crate::world::{Actor, SUBJECT};
 use recrash_model::account::{Act, Compass};
 
@@ -158,11 +159,11 @@ impl Parser<'_> {
 
     /// "It slowed for cars in the eastbound lane": whom the lane is told of, where the direction of who slowed is known.
     fn named_in_lane(&self, placed: &Placed, carry: &Carry) -> Option<Actor> {
-        let word = |at: usize| self.tokens.get(at).map_or("", |token| token.text.as_str());
-        let lane = matches!(word(placed.end), "lane" | "lanes" | "direction");
+        let lane = matches!(word(self.tokens, placed.end), "lane" | "lanes" | "direction");
         let last = carry.last.as_ref().filter(|last| lane && last.piece.is_none() && last.actor != SUBJECT)?;
-        let behind =
-            matches!(word(last.end), "in" | "on") && word(last.end + 1) == "the" && last.end + 2 == placed.first;
+        let behind = matches!(word(self.tokens, last.end), "in" | "on")
+            && word(self.tokens, last.end + 1) == "the"
+            && last.end + 2 == placed.first;
         let frame = &self.frames[carry.frame?];
         let known = frame.who.is_some_and(|who| who != last.actor && self.world.actors[who].heading.is_some());
         (behind && known).then_some(last.actor)

@@ -4,6 +4,7 @@ use super::Frame;
 use super::parser::{Carry, Parser};
 use crate::chunk::{Chunk, Placed, Spot};
 use crate::lexicon::{Form, Sense};
+use crate::token::word;
 use crate::world::{Actor, SUBJECT};
 use recrash_model::account::{Act, Kind, KindGroup, LaneWord, LeftRight};
 
@@ -171,11 +172,10 @@ impl Parser<'_> {
     /// "slowed to yield to a taxi in the rightmost lane", "touched the side of a van in the turn lane": of whom the lane is told. Who stops
     /// behind traffic in a lane is in that lane too.
     fn met_in_lane(&self, placed: &Placed, carry: &Carry) -> Option<Actor> {
-        let word = |at: usize| self.tokens.get(at).map_or("", |token| token.text.as_str());
         let last = carry.last.as_ref().filter(|last| last.actor != SUBJECT && last.person.is_none())?;
         let frame = &self.frames[carry.frame?];
         let met = matches!(frame.sense, Sense::Yield | Sense::See | Sense::Act(Act::Slow)) || frame.is_contact();
-        let at_once = word(last.end) == "in" && last.end + 2 >= placed.first;
+        let at_once = word(self.tokens, last.end) == "in" && last.end + 2 >= placed.first;
         let known = &self.world.actors[last.actor];
         let own = frame.who == Some(SUBJECT) && frame.object == Some(last.actor) && !known.several;
         (met && at_once && own && known.kind.is_some_and(Kind::is_vehicle)).then_some(last.actor)
@@ -206,11 +206,12 @@ impl Parser<'_> {
             at.and_then(|at| self.tokens.get(at))
                 .is_some_and(|token| matches!(token.text.as_str(), "partially" | "partly"))
         };
-        let word = |at: usize| self.tokens.get(at).map_or("", |token| token.text.as_str());
-        let one = partly(placed.first.checked_sub(3)) && word(placed.first - 1) == "the";
-        let other = word(placed.end) == "and" && partly(Some(placed.end + 1));
-        let own = (placed.end + 3..placed.end + 9)
-            .any(|at| word(at) == "'s" && word(at + 1) == "lane" || word(at) == "same" && word(at + 1) == "lane");
+        let one = partly(placed.first.checked_sub(3)) && word(self.tokens, placed.first - 1) == "the";
+        let other = word(self.tokens, placed.end) == "and" && partly(Some(placed.end + 1));
+        let own = (placed.end + 3..placed.end + 9).any(|at| {
+            word(self.tokens, at) == "'s" && word(self.tokens, at + 1) == "lane"
+                || word(self.tokens, at) == "same" && word(self.tokens, at + 1) == "lane"
+        });
         one && other && own
     }
 

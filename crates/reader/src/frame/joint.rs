@@ -6,6 +6,7 @@ use super::row::{another_finite, goes_on_behind_comma};
 use super::supposed::expects;
 use crate::chunk::{Article, Chunk, Joint, Placed};
 use crate::lexicon::{Form, Progress, Relation, Sense};
+use crate::token::is_crash_noun;
 use crate::world::SUBJECT;
 use recrash_model::account::{Act, Kind, KindGroup};
 
@@ -157,7 +158,7 @@ impl Parser<'_> {
         let and = behind.first().map_or(0, |placed| placed.first.saturating_sub(1));
         let words: Vec<&str> =
             self.tokens[and.saturating_sub(4)..and].iter().map(|token| token.text.as_str()).collect();
-        let time = matches!(words.last(), Some(&("impact" | "contact" | "collision" | "crash")));
+        let time = words.last().is_some_and(|word| is_crash_noun(word));
         time && words.iter().any(|word| matches!(*word, "before" | "prior"))
     }
 
@@ -181,7 +182,7 @@ impl Parser<'_> {
         let who = last.who.filter(|who| *who != SUBJECT && joint == Joint::While && leaves && turns)?;
         let here = |frame: &&Frame| frame.sentence == self.sentence && frame.who == Some(SUBJECT);
         let mut own = self.frames.iter().filter(here);
-        let stops = own.any(|frame| matches!(frame.act(), Some(Act::Stop | Act::Hold)));
+        let stops = own.any(|frame| frame.act().is_some_and(Act::stands));
         let last = carry.last.clone().filter(|last| last.actor == who);
         last.filter(|_| stops && carry.subject.as_ref().is_some_and(|subject| subject.actor == SUBJECT))
     }

@@ -1,7 +1,7 @@
 //! Manoeuvres that are told by a noun, put in the words of their verbs: "was midway through a left turn", "carried out a lane change", "during
 //! its overtaking maneuver". The places of the tokens stay.
 
-use crate::token::Token;
+use crate::token::{Token, word};
 
 /// What somebody does whose manoeuvre a noun tells.
 #[derive(Clone, Copy, PartialEq)]
@@ -60,10 +60,10 @@ pub(super) fn apply(tokens: &mut [Token]) {
 
 /// "reacted with hard braking and a shift to the right": it braked, and shifted to the right.
 fn answer_with(tokens: &mut [Token], at: usize) {
-    let word = |at: usize| tokens.get(at).map_or("", |token| token.text.as_str());
-    let answers = matches!(word(at), "reacted" | "responded" | "answered") && matches!(word(at + 1), "with" | "by");
+    let answers = matches!(word(tokens, at), "reacted" | "responded" | "answered")
+        && matches!(word(tokens, at + 1), "with" | "by");
     let Some((verb, end)) = answer(tokens, at + 2).filter(|_| answers) else { return };
-    let more = answer(tokens, end + 1).filter(|_| matches!(word(end), "and" | ","));
+    let more = answer(tokens, end + 1).filter(|_| matches!(word(tokens, end), "and" | ","));
     for (verb, first, end) in
         [Some((verb, at, end)), more.map(|(verb, last)| (verb, end + 1, last))].into_iter().flatten()
     {
@@ -90,10 +90,9 @@ fn answer(tokens: &[Token], from: usize) -> Option<(&'static str, usize)> {
         "small",
         "brief",
     ];
-    let word = |at: usize| tokens.get(at).map_or("", |token| token.text.as_str());
-    let first = from + usize::from(matches!(word(from), "a" | "an" | "its"));
-    let noun = (first..first + 3).find(|at| !HOW.contains(&word(*at)))?;
-    let verb = match word(noun) {
+    let first = from + usize::from(matches!(word(tokens, from), "a" | "an" | "its"));
+    let noun = (first..first + 3).find(|at| !HOW.contains(&word(tokens, *at)))?;
+    let verb = match word(tokens, noun) {
         "braking" | "brake" | "brakes" | "deceleration" => "braked",
         "shift" | "nudge" => "shifted",
         "swerve" => "swerved",
@@ -101,13 +100,13 @@ fn answer(tokens: &[Token], from: usize) -> Option<(&'static str, usize)> {
         "steering" => "steered",
         _ => return None,
     };
-    let long = matches!(word(noun + 1), "maneuver" | "application" | "input" | "action");
+    let long = matches!(word(tokens, noun + 1), "maneuver" | "application" | "input" | "action");
     Some((verb, noun + 1 + usize::from(long)))
 }
 
 /// "during", "still in", "midway through", "in the middle of", "engaged in": the token behind it, and whether a clause begins with it.
 fn midway(tokens: &[Token], at: usize) -> Option<(usize, bool)> {
-    let word = |ahead: usize| tokens.get(at + ahead).map_or("", |token| token.text.as_str());
+    let word = |ahead: usize| word(tokens, at + ahead);
     let begins = at == 0 || matches!(tokens[at - 1].text.as_str(), "." | "\u{b6}");
     Some(match (word(0), word(1), word(2), word(3)) {
         ("during", ..) => (at + 1, true),
@@ -171,7 +170,7 @@ fn is_unknown(verb: &str, named: &Named, begins: bool) -> bool {
 
 /// "advancing into the turn", "entered a left turn", "coming out of its turn": the token behind it, and the form.
 fn goes_into(tokens: &[Token], at: usize) -> Option<(usize, &'static str)> {
-    let word = |ahead: usize| tokens.get(at + ahead).map_or("", |token| token.text.as_str());
+    let word = |ahead: usize| word(tokens, at + ahead);
     let form = match word(0) {
         "entering" | "advancing" | "proceeding" | "moving" | "going" | "continuing" | "coming" => "ing",
         "entered" | "advanced" | "proceeded" | "moved" | "went" | "continued" | "came" => "ed",
@@ -188,7 +187,7 @@ fn goes_into(tokens: &[Token], at: usize) -> Option<(usize, &'static str)> {
 
 /// The noun of a manoeuvre that begins here with an article.
 fn named(tokens: &[Token], from: usize) -> Option<Named> {
-    let word = |at: usize| tokens.get(at).map_or("", |token| token.text.as_str());
+    let word = |at: usize| word(tokens, at);
     if !matches!(word(from), "a" | "an" | "the" | "its" | "his" | "her" | "their") {
         return None;
     }
@@ -240,7 +239,7 @@ fn named(tokens: &[Token], from: usize) -> Option<Named> {
 
 /// "began an unprotected left onto Elm Street": its noun is left out.
 fn ellipsis(tokens: &[Token], from: usize) -> Option<Named> {
-    let word = |at: usize| tokens.get(at).map_or("", |token| token.text.as_str());
+    let word = |at: usize| word(tokens, at);
     let how = |word: &str| matches!(word, "unprotected" | "protected" | "wide" | "sharp" | "gentle" | "quick");
     let at = from + 1 + usize::from(how(word(from + 1)));
     let side = match word(at) {

@@ -29,7 +29,7 @@ pub use crate::world::Own;
 
 use crate::chunk::{Joint, Piece, Spot};
 use crate::lexicon::{Form, Lexicon, Meaning, Occupant, Part, Progress, Relation, Sense};
-use crate::token::{Sentence, Token};
+use crate::token::{Sentence, Token, is_crash_noun, word};
 use crate::world::{Actor, Known, SUBJECT, World};
 use parser::Parser;
 use recrash_model::account::{Act, Compass, KindGroup, LaneWord, LeftRight};
@@ -131,6 +131,13 @@ pub struct Story {
     pub frames: Vec<Frame>,
     /// Who is in it.
     pub world: World,
+}
+
+impl Story {
+    /// The word of a token; nothing where none is.
+    pub(crate) fn word(&self, at: usize) -> &str {
+        word(&self.tokens, at)
+    }
 }
 
 /// Most tokens of a narrative that are read; the longest published one has a third of it.
@@ -334,17 +341,23 @@ fn tells_contact(words: &[Token]) -> bool {
     tells("made contact") || tells("collision involving") || (0..words.len()).any(touches)
 }
 
-fn looks_back(words: &[Token]) -> bool {
+/// Whether a sentence looks back from the crash: "Prior to the collision", "In the seconds leading up to the impact".
+pub(crate) fn looks_back(words: &[Token]) -> bool {
     let text: Vec<&str> = words.iter().take(8).map(|token| token.text.as_str()).collect();
-    let of_crash = text
-        .iter()
-        .any(|word| matches!(*word, "collision" | "incident" | "impact" | "crash" | "event" | "contact" | "accident"));
-    matches!(
-        text.as_slice(),
-        ["prior" | "before" | "immediately" | "just" | "leading" | "moments" | "shortly" | "seconds", ..]
-    ) && of_crash
-        && text.iter().any(|word| matches!(*word, "prior" | "before" | "up"))
+    let behind = match text.as_slice() {
+        ["before" | "preceding", behind @ ..] => behind,
+        [
+            "prior" | "leading" | "just" | "immediately" | "shortly" | "seconds" | "moments",
+            "up" | "to" | "before" | "prior",
+            behind @ ..,
+        ] => behind,
+        _ => return false,
+    };
+    behind.iter().take(LOOKS_BACK_WITHIN).any(|word| is_crash_noun(word) || *word == "event")
 }
+
+/// Words from "prior" up to the crash. [words]
+const LOOKS_BACK_WITHIN: usize = 3;
 
 /// "It moved to the right but was not able to avoid contact", told behind the contact.
 fn could_not_avoid(words: &[Token]) -> bool {

@@ -5,7 +5,7 @@ use super::parser::{Carry, Mention, Parser};
 use super::row::{another_finite, goes_on_behind_comma, relation_behind, transitive};
 use crate::chunk::{Article, Chunk, Joint, Noun, Piece, Placed};
 use crate::lexicon::{Adjective, Form, Occupant, Relation, Sense};
-use crate::token::{TokenKind, number};
+use crate::token::{TokenKind, number, word};
 use crate::world::{Actor, SUBJECT, same_kind};
 use recrash_model::account::{Act, Kind, KindGroup};
 
@@ -200,7 +200,7 @@ impl Parser<'_> {
 
     /// "A woman pushing a stroller", "a man walking a dog": not who rides, and was announced.
     fn goes_on_foot(&self, noun: &Noun, end: usize) -> bool {
-        let next = |at: usize| self.tokens.get(end + at).map_or("", |token| token.text.as_str());
+        let next = |at: usize| word(self.tokens, end + at);
         let on_foot = matches!(next(0), "pushing" | "walking" | "jogging" | "strolling");
         let rides = |kind: Kind| matches!(kind, Kind::Skateboarder | Kind::ScooterRider | Kind::Wheelchair);
         let rider = self.world.actors.iter().any(|known| known.announced && known.kind.is_some_and(rides));
@@ -224,10 +224,9 @@ impl Parser<'_> {
 
     /// "the third car in line".
     fn is_in_line(&self, noun: &Noun, end: usize) -> bool {
-        let word = |at: usize| self.tokens.get(at).map_or("", |token| token.text.as_str());
-        let line = matches!(word(end + 1), "line" | "queue")
-            || word(end + 1) == "the" && matches!(word(end + 2), "line" | "queue");
-        noun.ordinal.is_some() && word(end) == "in" && line
+        let line = matches!(word(self.tokens, end + 1), "line" | "queue")
+            || word(self.tokens, end + 1) == "the" && matches!(word(self.tokens, end + 2), "line" | "queue");
+        noun.ordinal.is_some() && word(self.tokens, end) == "in" && line
     }
 
     /// "its toolbox scratched the door": whose it is does so.
@@ -240,13 +239,7 @@ impl Parser<'_> {
 
     /// "A van left its stall as the vehicle was going by": not the van.
     fn is_vehicle_of_story(&self, noun: &Noun, actor: Actor, carry: &Carry) -> bool {
-        let plain = noun.kind == Some(Kind::Vehicle)
-            && noun.article == Article::Definite
-            && noun.adjectives.is_empty()
-            && noun.names.is_empty()
-            && noun.number.is_none()
-            && !noun.several
-            && noun.occupant.is_none();
+        let plain = noun.is_plain_vehicle() && noun.occupant.is_none();
         let of_main = carry.main.as_ref().is_some_and(|main| main.actor == actor && actor != SUBJECT);
         plain && of_main && carry.fresh && carry.joint == Some(Joint::While) && self.world.topic == SUBJECT
     }
@@ -553,9 +546,9 @@ impl Parser<'_> {
     /// "struck, with its front, the rear of it": the object stands behind what is inserted.
     fn was_inserted(&self, frame: usize) -> bool {
         let frame = &self.frames[frame];
-        let word = |at: usize| self.tokens.get(at).map_or("", |token| token.text.as_str());
-        let inserted = frame.with.is_some() && word(frame.end + 1) == "with" || word(frame.end + 1) == "at";
-        frame.is_contact() && inserted && word(frame.end) == ","
+        let inserted = frame.with.is_some() && word(self.tokens, frame.end + 1) == "with"
+            || word(self.tokens, frame.end + 1) == "at";
+        frame.is_contact() && inserted && word(self.tokens, frame.end) == ","
     }
 
     /// "a dolly attached to the back of the truck": what is told of it in the sentence is told of the truck.

@@ -1,7 +1,7 @@
 //! Words that name somebody, made plain before a narrative is read: numbered units, companies, nouns that nobody knows.
 
 use crate::lexicon::{COMPANY, Lexicon, Meaning};
-use crate::token::{Token, TokenKind};
+use crate::token::{Token, TokenKind, word};
 use crate::world::Own;
 
 /// Companies that report, and whose vehicles others drive too.
@@ -10,7 +10,7 @@ const MAKERS: [&str; 3] = ["tesla", "rivian", "lucid"];
 /// "V2", "Vehicle2", "Unit 2", "V-1", "P-2": another vehicle.
 pub(super) fn units(tokens: &mut Vec<Token>) {
     for at in (0..tokens.len()).rev() {
-        let next = tokens.get(at + 1).map_or("", |next| next.text.as_str());
+        let next = word(tokens, at + 1);
         let unit = match tokens[at].text.as_str() {
             "unit" | "party" => matches!(next, "2" | "3" | "4" | "5"),
             "v" | "p" => {
@@ -61,7 +61,7 @@ pub(super) fn companies(tokens: &mut [Token], own: Own<'_>) {
 /// "A Tern autonomous vehicle ... the Tern vehicle", "a Tern vehicle driving in autonomous mode": a company whose name the lexicon does not know
 /// is known by its first vehicle.
 fn name_operators(tokens: &mut [Token]) {
-    let word = |at: usize| tokens.get(at).map_or("", |token| token.text.as_str());
+    let word = |at: usize| word(tokens, at);
     let lexicon = Lexicon::get();
     let subject = |at: usize| lexicon.longest(tokens, at, |meaning| matches!(meaning, Meaning::Subject)).is_some();
     let drives_itself = |at: usize| {
@@ -100,20 +100,19 @@ const OWN_MODE_WITHIN: usize = 10;
 /// Nouns that nobody knows, and that may be a road user: "a gleeper was", "by a gleeper".
 pub(super) fn strangers(tokens: &[Token]) -> Vec<String> {
     let lexicon = Lexicon::get();
-    let word = |at: usize| tokens.get(at).map_or("", |token| token.text.as_str());
     let mut all: Vec<String> = Vec::new();
     for (at, token) in tokens.iter().enumerate().skip(1) {
         let unknown = token.kind == TokenKind::Word
             && !token.capital
             && token.text.len() > 3
             && lexicon.longest(tokens, at, |_| true).is_none()
-            && ["a", "an", "another", "the", "one"].contains(&word(at - 1));
+            && ["a", "an", "another", "the", "one"].contains(&word(tokens, at - 1));
         let acts = lexicon.longest(tokens, at + 1, |meaning| matches!(meaning, Meaning::Verb(..))).is_some()
             || matches!(
-                word(at + 1),
+                word(tokens, at + 1),
                 "was" | "had" | "that" | "which" | "who" | "behind" | "in" | "on" | "from" | "also"
             );
-        let done_by = at > 1 && matches!(word(at - 2), "by" | "with" | "into");
+        let done_by = at > 1 && matches!(word(tokens, at - 2), "by" | "with" | "into");
         if unknown && (acts || done_by) && !all.contains(&token.text) {
             all.push(token.text.clone());
         }

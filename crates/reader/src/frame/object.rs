@@ -6,8 +6,8 @@ use super::row::transitive;
 use super::zone_of;
 use crate::chunk::{Chunk, Piece, Placed};
 use crate::lexicon::{Form, Meaning, Progress, Relation, Sense};
-use crate::token::Token;
 use crate::token::TokenKind;
+use crate::token::{Token, word};
 use crate::world::{Actor, SUBJECT};
 use recrash_model::account::{Act, Kind, KindGroup, LeftRight};
 
@@ -281,7 +281,7 @@ impl Parser<'_> {
         let Some(before) = frame.checked_sub(1) else { return frame };
         let (facing, stands) = (&self.frames[frame], &self.frames[before]);
         let same = (facing.sentence, facing.who) == (stands.sentence, stands.who);
-        let stood = matches!(stands.act(), Some(Act::Stop | Act::Hold));
+        let stood = stands.act().is_some_and(Act::stands);
         if facing.sense == Sense::Face && same && stood { before } else { frame }
     }
 
@@ -306,7 +306,7 @@ impl Parser<'_> {
     /// "had waited at the yield line for a van": that comes across its way. Who is waited for "to go" stands ahead.
     fn at_yield_line(&self, frame: usize, placed: &Placed) -> bool {
         let words = &self.tokens[self.frames[frame].first.min(placed.first)..placed.first];
-        let next = |at: usize| self.tokens.get(placed.end + at).map_or("", |token| token.text.as_str());
+        let next = |at: usize| word(self.tokens, placed.end + at);
         let goes = next(0) == "to" && matches!(next(1), "go" | "move" | "proceed" | "advance");
         let line = |pair: &[Token]| pair[0].text == "yield" && matches!(pair[1].text.as_str(), "line" | "sign");
         !goes && words.windows(2).any(line)

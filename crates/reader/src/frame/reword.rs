@@ -3,7 +3,7 @@
 
 use super::stand;
 use crate::lexicon::{Lexicon, Meaning, Sense};
-use crate::token::{Token, TokenKind};
+use crate::token::{Token, TokenKind, word};
 
 /// Rewords the tokens of a narrative.
 pub(super) fn apply(tokens: &mut Vec<Token>) {
@@ -36,7 +36,7 @@ fn name_holes(tokens: &mut [Token]) {
     const ROADS: [&str; 6] = ["road", "roadway", "pavement", "asphalt", "street", "lane"];
     const GONE: [&str; 8] = ["removed", "missing", "milled", "excavated", "demolished", "dug", "torn", "taken"];
     for at in 0..tokens.len().saturating_sub(4) {
-        let word = |ahead: usize| tokens.get(at + ahead).map_or("", |token| token.text.as_str());
+        let word = |ahead: usize| word(tokens, at + ahead);
         if !PIECES.contains(&word(0)) || word(1) != "of" {
             continue;
         }
@@ -164,16 +164,16 @@ fn drives(tokens: &[Token], at: usize) -> bool {
         "made",
     ];
     let at = at + usize::from(matches!(tokens[at].text.as_str(), "was" | "had"));
-    let word = |at: usize| tokens.get(at).map_or("", |token| token.text.as_str());
     let moves = |sense| matches!(sense, Sense::Act(_) | Sense::Sided(..) | Sense::Approach | Sense::Yield);
     let found =
         Lexicon::get().longest(tokens, at, |meaning| matches!(meaning, Meaning::Verb(sense, _) if moves(sense)));
-    let switched = |length: usize| matches!(word(at + length), "off" | "on" | "itself" | "down" | "online" | "offline");
+    let switched =
+        |length: usize| matches!(word(tokens, at + length), "off" | "on" | "itself" | "down" | "online" | "offline");
     // "turned the lights on", "passed control to somebody", "moved to a fallback mode".
-    let handles = ["turn", "pass", "mov"].iter().any(|stem| word(at).starts_with(stem))
-        && (matches!(word(at + 1), "the" | "its" | "control")
-            || word(at + 1) == "to" && matches!(word(at + 2), "a" | "its"));
-    STEMS.iter().any(|stem| word(at).starts_with(stem))
+    let handles = ["turn", "pass", "mov"].iter().any(|stem| word(tokens, at).starts_with(stem))
+        && (matches!(word(tokens, at + 1), "the" | "its" | "control")
+            || word(tokens, at + 1) == "to" && matches!(word(tokens, at + 2), "a" | "its"));
+    STEMS.iter().any(|stem| word(tokens, at).starts_with(stem))
         && found.is_some_and(|found| !switched(found.length))
         && !handles
 }
@@ -268,7 +268,7 @@ fn hold_by_hand(tokens: &mut [Token]) {
                     "held" | "handheld" | "holding" | "holds" | "waving" | "carrying" | "wielding"
                 )
             });
-        let word = |ahead: usize| tokens.get(at + ahead).map_or("", |token| token.text.as_str());
+        let word = |ahead: usize| word(tokens, at + ahead);
         // "with a stop sign in hand", "raised a stop sign".
         let in_hand = word(2) == "in" && (word(3) == "hand" || matches!(word(3), "his" | "her") && word(4) == "hand");
         let raised = tokens[at.saturating_sub(2)..at]
@@ -289,7 +289,7 @@ fn name_loose_boards(tokens: &mut [Token]) {
         |word: &str| matches!(word, "unattended" | "riderless" | "unoccupied" | "runaway" | "abandoned" | "loose");
     let mut loose = tokens.windows(2).any(|pair| alone(&pair[0].text) && pair[1].text == "skateboard");
     for at in 0..tokens.len().saturating_sub(4) {
-        let word = |ahead: usize| tokens.get(at + ahead).map_or("", |token| token.text.as_str());
+        let word = |ahead: usize| word(tokens, at + ahead);
         let had = usize::from(matches!(word(2), "had" | "has" | "suddenly"));
         let lost = match word(2 + had) {
             "escaped" => true,
@@ -401,7 +401,7 @@ const LANE_WORDS: usize = 6;
 /// "went on to turn left", "set out to pass", "set about turning": it did, or began to.
 fn go_on_to(tokens: &mut [Token]) {
     for at in 0..tokens.len().saturating_sub(3) {
-        let word = |ahead: usize| tokens.get(at + ahead).map_or("", |token| token.text.as_str());
+        let word = |ahead: usize| word(tokens, at + ahead);
         let (verb, small) = match (word(0), word(1), word(2)) {
             ("go" | "move" | "carry", "on", "to") => ("proceed", 1),
             ("went" | "moved" | "carried" | "gone", "on", "to") => ("proceeded", 1),
@@ -484,28 +484,28 @@ fn made_to_stop(tokens: &mut Vec<Token>) {
     let stops = |word: &str| ["stop", "halt", "brake", "slow", "wait", "yield", "swerve", "decelerate"].contains(&word);
     let lexicon = Lexicon::get();
     for at in (1..tokens.len().saturating_sub(3)).rev() {
-        let word = |at: usize| tokens.get(at).map_or("", |token| token.text.as_str());
-        let makes = match word(at) {
+        let makes = match word(tokens, at) {
             "brought" | "made" | "forced" | "compelled" | "obliged" | "prompted" | "required" | "led" => "caused",
             "bringing" | "making" | "forcing" | "compelling" | "obliging" | "prompting" | "requiring" => "causing",
             _ => continue,
         };
-        let named = at + 1 + usize::from(matches!(word(at + 1), "the" | "our"));
+        let named = at + 1 + usize::from(matches!(word(tokens, at + 1), "the" | "our"));
         let subject =
             lexicon.longest(tokens, named, |meaning| matches!(meaning, Meaning::Subject)).map(|found| found.length);
         // "The test driver brought the vehicle to a halt" is a verb of the lexicon: nobody else did it.
         let begins = tokens[..at].iter().rposition(|token| token.text == ".").map_or(0, |stop| stop + 1);
         let drives = |token: &Token| matches!(token.text.as_str(), "driver" | "operator" | "specialist");
-        if word(at).starts_with("br") && tokens[begins..at].iter().any(drives) {
+        if word(tokens, at).starts_with("br") && tokens[begins..at].iter().any(drives) {
             continue;
         }
-        let Some(length) = subject.or((word(at + 1) == "it").then_some(1)) else { continue };
+        let Some(length) = subject.or((word(tokens, at + 1) == "it").then_some(1)) else { continue };
         let end = named + length;
-        let halts =
-            (word(end), word(end + 1)) == ("to", "a") && matches!(word(end + 2), "stop" | "halt" | "standstill");
-        let bare = word(at).starts_with("ma") && stops(word(end));
-        let infinitive = word(end) == "to" && stops(word(end + 1)) && !word(at).starts_with("br");
-        if halts && word(at).starts_with("br") {
+        let halts = (word(tokens, end), word(tokens, end + 1)) == ("to", "a")
+            && matches!(word(tokens, end + 2), "stop" | "halt" | "standstill");
+        let bare = word(tokens, at).starts_with("ma") && stops(word(tokens, end));
+        let infinitive =
+            word(tokens, end) == "to" && stops(word(tokens, end + 1)) && !word(tokens, at).starts_with("br");
+        if halts && word(tokens, at).starts_with("br") {
             "stop".clone_into(&mut tokens[end + 1].text);
             "completely".clone_into(&mut tokens[end + 2].text);
         } else if bare {

@@ -11,7 +11,7 @@ use super::parser::{Carry, Parser};
 use super::row::{Spoken, single};
 use crate::chunk::Chunk;
 use crate::lexicon::{Form, Occupant, Progress, Sense};
-use crate::token::{Token, TokenKind};
+use crate::token::{Token, TokenKind, is_crash_noun, word};
 use crate::world::SUBJECT;
 use recrash_model::account::{Act, Compass, Kind, KindGroup, LeftRight};
 
@@ -149,9 +149,7 @@ fn tries_to_avoid(parser: &Parser<'_>, verb: &Spoken<'_>, carry: &Carry) -> Opti
     }
     let own = carry.subject.as_ref().is_some_and(|subject| subject.actor == SUBJECT);
     let behind = &parser.tokens[verb.placed().end..];
-    let crash = |token: &Token| {
-        matches!(token.text.as_str(), "collision" | "contact" | "crash" | "impact" | "accident" | "incident")
-    };
+    let crash = |token: &Token| is_crash_noun(&token.text);
     let whole = parser.tokens.iter().skip(carry_first(parser, verb)).take_while(|token| token.text != ".");
     let mut whole = whole.map(|token| token.text.as_str());
     let otherwise = whole.any(|word| OTHERWISE.iter().any(|stem| word.starts_with(stem)));
@@ -179,7 +177,7 @@ fn pulls_up_to(parser: &Parser<'_>, verb: &Spoken<'_>, _carry: &Carry) -> Option
 /// "The motorcycle came to rest on its right side": it touches nobody.
 fn lies_on_its_side(parser: &Parser<'_>, verb: &Spoken<'_>, _carry: &Carry) -> Option<Sense> {
     let placed = verb.placed();
-    let word = |at: usize| parser.tokens.get(placed.end + at).map_or("", |token| token.text.as_str());
+    let word = |at: usize| word(parser.tokens, placed.end + at);
     let rests =
         parser.tokens[placed.first..placed.end].windows(2).any(|pair| pair[0].text == "rest" && pair[1].text == "on");
     let own = word(0) == "its" && (word(1) == "side" || word(2) == "side" || matches!(word(1), "roof" | "top"));
@@ -287,7 +285,7 @@ fn stands_backed_up(parser: &Parser<'_>, verb: &Spoken<'_>, carry: &Carry) -> Op
     let placed = verb.placed();
     let backed = verb.sense == Sense::Act(Act::Reverse) && verb.form == Form::Past && verb.word(parser) == "backed";
     let remains = matches!(verb.chunk_before(), Some(Chunk::Verb(Sense::Act(Act::Hold), _)));
-    let next = parser.tokens.get(placed.end).map_or("", |token| token.text.as_str());
+    let next = word(parser.tokens, placed.end);
     let up = parser.tokens[placed.end - 1].text == "up";
     // "Northbound traffic was backed up from the next light."
     let several = carry.subject.as_ref().is_some_and(|subject| parser.world.actors[subject.actor].several);
@@ -305,7 +303,7 @@ fn stands_backed_up(parser: &Parser<'_>, verb: &Spoken<'_>, carry: &Carry) -> Op
 /// "a queue that reached back from the light" goes nowhere.
 fn reaches_back(parser: &Parser<'_>, verb: &Spoken<'_>, carry: &Carry) -> Option<Sense> {
     let several = carry.subject.as_ref().is_some_and(|subject| parser.world.actors[subject.actor].several);
-    let next = parser.tokens.get(verb.placed().end).map_or("", |token| token.text.as_str());
+    let next = word(parser.tokens, verb.placed().end);
     (several && verb.sense == Sense::Approach && next == "back").then_some(Sense::Other)
 }
 
@@ -319,7 +317,7 @@ fn remains_so(parser: &Parser<'_>, verb: &Spoken<'_>, carry: &Carry) -> Option<S
     if goes_along(parser, verb) && !stood_before(parser, carry) {
         return Some(Sense::Other);
     }
-    let next = |at: usize| parser.tokens.get(placed.end + at).map_or("", |token| token.text.as_str());
+    let next = |at: usize| word(parser.tokens, placed.end + at);
     let so = matches!(
         next(0),
         "consistent" | "constant" | "engaged" | "unchanged" | "upright" | "active" | "green" | "red" | "steady" | "the"
@@ -349,13 +347,13 @@ fn stood_before(parser: &Parser<'_>, carry: &Carry) -> bool {
     let Some(subject) = &carry.subject else { return false };
     let own = |frame: &&super::Frame| frame.who == Some(subject.actor) && frame.happened() && frame.act().is_some();
     let last = parser.frames.iter().rev().find(own);
-    last.is_some_and(|last| matches!(last.act(), Some(Act::Hold | Act::Stop | Act::Park)))
+    last.is_some_and(|last| last.act().is_some_and(Act::rests))
 }
 
 /// "was not moving", "had not moved": it stood. "Did not move over" is told of the lane.
 fn does_not_move(parser: &Parser<'_>, verb: &Spoken<'_>, carry: &Carry) -> Option<Sense> {
     let moves = verb.sense == Sense::Act(Act::Follow) && verb.word(parser).starts_with("mov") && single(verb.placed());
-    let next = parser.tokens.get(verb.placed().end).map_or("", |token| token.text.as_str());
+    let next = word(parser.tokens, verb.placed().end);
     let way = matches!(
         next,
         "over"
@@ -417,12 +415,15 @@ fn half_stops(parser: &Parser<'_>, verb: &Spoken<'_>, carry: &Carry) -> Option<S
         return None;
     }
     let placed = verb.placed();
-    let word = |at: usize| parser.tokens.get(at).map_or("", |token| token.text.as_str());
     let around = placed.first.saturating_sub(1)..placed.end + 2;
     let whole = around.clone().any(|at| {
-        matches!(word(at), "completely" | "fully" | "entirely" | "complete" | "full" | "quite" | "altogether")
+        matches!(
+            word(parser.tokens, at),
+            "completely" | "fully" | "entirely" | "complete" | "full" | "quite" | "altogether"
+        )
     });
-    let control = (placed.end..placed.end + 7).any(|at| matches!(word(at), "sign" | "light" | "signal" | "line"));
+    let control =
+        (placed.end..placed.end + 7).any(|at| matches!(word(parser.tokens, at), "sign" | "light" | "signal" | "line"));
     (whole && !control).then_some(Sense::Act(Act::Slow))
 }
 
@@ -444,7 +445,7 @@ fn is_held_by(parser: &Parser<'_>, verb: &Spoken<'_>, carry: &Carry) -> Option<S
     let placed = verb.placed();
     let be = carry.be || !single(placed);
     let held = be && verb.sense == Sense::Act(Act::Hold) && parser.tokens[placed.end - 1].text == "held";
-    let behind = |at: usize| parser.tokens.get(verb.placed().end + at).map_or("", |token| token.text.as_str());
+    let behind = |at: usize| word(parser.tokens, verb.placed().end + at);
     let by = behind(0) == "by" || matches!(behind(0), "up" | "aloft" | "open" | "down") && behind(1) == "by";
     // "was held up by traffic" stands.
     let waits =
@@ -474,7 +475,7 @@ fn begins_to_move_over(parser: &Parser<'_>, verb: &Spoken<'_>, _carry: &Carry) -
     if verb.sense != Sense::Act(Act::SetOff) || !moves {
         return None;
     }
-    let word = |at: usize| parser.tokens.get(placed.end + at).map_or("", |token| token.text.as_str());
+    let word = |at: usize| word(parser.tokens, placed.end + at);
     let lane = (1..7).take_while(|at| !matches!(word(*at), "," | "." | "and")).any(|at| word(at) == "lane");
     let far = how_far(&word);
     let over = word(0) == "over" || matches!(word(far), "left" | "right") || leads_aside(&|at| word(far + at));
@@ -524,7 +525,7 @@ fn stands_over(parser: &Parser<'_>, verb: &Spoken<'_>, carry: &Carry) -> Option<
         && OVER.iter().any(|stem| verb.word(parser).starts_with(stem));
     let who = carry.subject.as_ref().or(carry.last.as_ref()).filter(|_| over && !carry.be && !carry.began)?.actor;
     let last = parser.frames.iter().rev().find(|frame| frame.who == Some(who) && frame.act().is_some())?;
-    let stood = matches!(last.act(), Some(Act::Stop | Act::Hold | Act::Park)) && last.happened();
+    let stood = last.act().is_some_and(Act::rests) && last.happened();
     (stood && last.sentence == parser.sentence).then_some(Sense::Other)
 }
 
@@ -595,7 +596,7 @@ fn moves_a_little_aside(parser: &Parser<'_>, verb: &Spoken<'_>, _carry: &Carry) 
     const MOVES: [&str; 4] = ["mov", "proceed", "pull", "advanc"];
     let moves = matches!(verb.sense, Sense::Act(Act::Follow | Act::SetOff))
         && MOVES.iter().any(|stem| verb.word(parser).starts_with(stem));
-    let word = |at: usize| parser.tokens.get(verb.placed().end + at).map_or("", |token| token.text.as_str());
+    let word = |at: usize| word(parser.tokens, verb.placed().end + at);
     let far = how_far(&word);
     // "proceeded a short distance to the left of the van": that is where it was.
     let there = word(far + 3) == "of";

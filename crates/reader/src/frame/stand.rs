@@ -2,7 +2,7 @@
 //! "went on to turn" proceeded to. The places of the tokens stay.
 
 use crate::lexicon::{Lexicon, Meaning};
-use crate::token::{Token, TokenKind};
+use crate::token::{Token, TokenKind, word};
 
 /// Rewords the tokens of a narrative.
 pub(super) fn apply(tokens: &mut [Token]) {
@@ -21,10 +21,6 @@ pub(super) fn apply(tokens: &mut [Token]) {
         on_green(tokens, at);
         with_the_light(tokens, at);
     }
-}
-
-fn word(tokens: &[Token], at: usize) -> &str {
-    tokens.get(at).map_or("", |token| token.text.as_str())
 }
 
 /// Puts a word in the place of these tokens: the others only say how.

@@ -5,6 +5,7 @@ use super::parser::{Carry, Mention, Parser};
 use super::row::{Spoken, another_finite};
 use crate::chunk::{Chunk, Joint, Placed, Spot};
 use crate::lexicon::{Form, Meaning, Relation, Sense};
+use crate::token::word;
 use crate::world::{Actor, SUBJECT};
 use recrash_model::account::{Act, KindGroup, LeftRight};
 
@@ -194,9 +195,9 @@ impl Parser<'_> {
         let at_once = matches!(self.tokens[waiting.first + 1].text.as_str(), "on" | "to" | "from");
         let aside = waiting.act() == Some(Act::Pass) && waiting.object.is_none() && waiting.side.is_some() && at_once;
         let mut told = self.frames.iter().rev().filter(|frame| frame.who == Some(SUBJECT) && frame.happened());
-        let stands = told.find(|frame| frame.act().is_some()).is_some_and(|frame| {
-            matches!(frame.act(), Some(Act::Hold | Act::Stop | Act::Park)) && frame.sentence < self.sentence
-        });
+        let stands = told
+            .find(|frame| frame.act().is_some())
+            .is_some_and(|frame| frame.act().is_some_and(Act::rests) && frame.sentence < self.sentence);
         comes && (placed || aside) || stands && waiting.act() == Some(Act::Pass) && waiting.object.is_none()
     }
 
@@ -262,7 +263,7 @@ impl Parser<'_> {
         let frame = carry.frame.map(|frame| &self.frames[frame]).filter(|_| faces)?;
         let first = verb.placed().first;
         let stands_in_queue = |last: &Mention| {
-            matches!(frame.act(), Some(Act::Hold | Act::Stop))
+            frame.act().is_some_and(Act::stands)
                 && carry.governed
                 && last.end == first
                 && self.is_in_queue(frame.end, last.end)
@@ -310,15 +311,16 @@ impl Parser<'_> {
 
     /// "directly towards the AV", "at the vehicle", behind a participle.
     fn goes_to_subject(&self, at: usize) -> bool {
-        let word = |at: usize| self.tokens.get(at).map_or("", |token| token.text.as_str());
-        let adverb = usize::from(word(at).ends_with("ly") || matches!(word(at), "right" | "straight" | "back"));
+        let adverb = usize::from(
+            word(self.tokens, at).ends_with("ly") || matches!(word(self.tokens, at), "right" | "straight" | "back"),
+        );
         let at = at + adverb;
-        let article = usize::from(word(at + 1) == "the");
+        let article = usize::from(word(self.tokens, at + 1) == "the");
         let subject = |at: usize| {
             let named = self.lexicon.longest(self.tokens, at, |meaning| matches!(meaning, Meaning::Subject));
-            named.is_some() || word(at) == crate::lexicon::COMPANY && word(at + 1) == "av"
+            named.is_some() || word(self.tokens, at) == crate::lexicon::COMPANY && word(self.tokens, at + 1) == "av"
         };
-        matches!(word(at), "toward" | "towards") && subject(at + 1 + article)
+        matches!(word(self.tokens, at), "toward" | "towards") && subject(at + 1 + article)
     }
 
     /// Participles behind a noun that say by their own words whose they are.
@@ -367,12 +369,16 @@ impl Parser<'_> {
 
     /// Whether the noun that ends here stands behind "in reaction to", and nothing parts it from the participle: to what it does.
     fn is_reacted_to(&self, end: usize, participle: usize) -> bool {
-        let word = |at: usize| self.tokens[at].text.as_str();
-        let ends = |at: usize| matches!(word(at), "," | "." | "and" | "that" | "which" | "was" | "when" | "as");
+        let ends =
+            |at: usize| matches!(word(self.tokens, at), "," | "." | "and" | "that" | "which" | "was" | "when" | "as");
         let noun = end.saturating_sub(2 * NOUN_WORDS)..end;
-        let to = noun.rev().take_while(|at| !ends(*at)).find(|at| word(*at) == "to");
+        let to = noun.rev().take_while(|at| !ends(*at)).find(|at| word(self.tokens, *at) == "to");
         let reacts = to.is_some_and(|to| {
-            to > 0 && matches!(word(to - 1), "reaction" | "response" | "reacting" | "responding" | "due" | "owing")
+            to > 0
+                && matches!(
+                    word(self.tokens, to - 1),
+                    "reaction" | "response" | "reacting" | "responding" | "due" | "owing"
+                )
         });
         reacts && !(end..participle).any(ends)
     }

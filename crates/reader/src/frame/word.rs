@@ -3,6 +3,7 @@
 use super::parser::{Carry, Mention, Parser};
 use crate::chunk::{Chunk, Placed, is_determiner};
 use crate::lexicon::{Form, Progress, Sense};
+use crate::token::{is_crash_noun, word};
 use recrash_model::account::Kind;
 
 /// Participles of a thing that a vehicle carries or draws.
@@ -15,9 +16,10 @@ const TRAILER_WITHIN: usize = 4;
 impl Parser<'_> {
     /// Whether something is told to be "attached to" who is named next.
     pub(super) fn is_attached(&self, all: &[Placed], at: usize) -> bool {
-        let word = |at: usize| self.tokens.get(at).map_or("", |token| token.text.as_str());
         let end = all[at].end;
-        ATTACHED.contains(&word(all[at].first)) && end == all[at].first + 1 && word(end) == "to"
+        ATTACHED.contains(&word(self.tokens, all[at].first))
+            && end == all[at].first + 1
+            && word(self.tokens, end) == "to"
     }
 
     /// "a pickup pulling a wide horse trailer", "a horse trailer pulled by a pickup": it is drawn there.
@@ -123,7 +125,7 @@ impl Parser<'_> {
     fn involves(&mut self, all: &[Placed], at: usize, carry: &mut Carry) -> bool {
         let told = |frame: usize| self.frames[frame].sense == Sense::ContactMade && self.frames[frame].who.is_none();
         let noun = all[at].first.checked_sub(1).map_or("", |before| self.tokens[before].text.as_str());
-        let crash = matches!(noun, "collision" | "crash" | "contact" | "accident");
+        let crash = is_crash_noun(noun);
         if carry.frame.is_some_and(told) {
             carry.preposition = Some("between");
             return true;

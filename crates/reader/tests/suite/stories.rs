@@ -12,50 +12,90 @@ use recrash_model::zones::ContactZone;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 
+/// Each file of stories, by name.
+const FILES: [(&str, &str); 10] = [
+    ("stories.toml", include_str!("stories.toml")),
+    ("families.toml", include_str!("families.toml")),
+    ("wordings.toml", include_str!("wordings.toml")),
+    ("newer.toml", include_str!("newer.toml")),
+    ("whose.toml", include_str!("whose.toml")),
+    ("time.toml", include_str!("time.toml")),
+    ("grammar.toml", include_str!("grammar.toml")),
+    ("places.toml", include_str!("places.toml")),
+    ("astride.toml", include_str!("astride.toml")),
+    ("who.toml", include_str!("who.toml")),
+];
+
+/// Stories there are, so that none is lost unseen.
+const STORIES: usize = 2383;
+
+/// Expected facts read otherwise than the story asks for first, in a way that it accepts too.
+const SECOND_CHOICES: usize = 87;
+
 #[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
 struct File {
     story: Vec<Story>,
 }
 
 #[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
 struct Story {
+    #[serde(skip)]
+    file: &'static str,
     name: String,
     text: String,
+    /// What is to be read, by the names of `common::facts`. Behind a `|` stands what is accepted beside it, and read today.
     expect: BTreeMap<String, String>,
 }
 
+impl Story {
+    /// File and name, for messages.
+    fn id(&self) -> String {
+        format!("{}, \"{}\"", self.file, self.name)
+    }
+}
+
 fn stories() -> Vec<Story> {
-    let files = [
-        include_str!("stories.toml"),
-        include_str!("families.toml"),
-        include_str!("wordings.toml"),
-        include_str!("newer.toml"),
-        include_str!("whose.toml"),
-        include_str!("time.toml"),
-        include_str!("grammar.toml"),
-        include_str!("places.toml"),
-        include_str!("astride.toml"),
-        include_str!("who.toml"),
-    ];
-    files.iter().flat_map(|text| toml::from_str::<File>(text).unwrap().story).collect()
+    let read = |&(file, text): &(&'static str, &str)| {
+        let stories = toml::from_str::<File>(text).unwrap_or_else(|error| panic!("{file}: {error}")).story;
+        stories.into_iter().map(|story| Story { file, ..story }).collect::<Vec<_>>()
+    };
+    FILES.iter().flat_map(read).collect()
+}
+
+#[test]
+fn every_story_stands_there_once_under_a_name_of_its_own() {
+    let stories = stories();
+    assert!(stories.len() >= STORIES, "{} stories of {STORIES}", stories.len());
+    let (mut names, mut texts) = (BTreeMap::new(), BTreeMap::new());
+    for story in &stories {
+        for (known, what) in [(&mut names, &story.name), (&mut texts, &story.text)] {
+            if let Some(other) = known.insert(what, story.id()) {
+                panic!("{} and {other} have the same name or text: {what}", story.id());
+            }
+        }
+    }
 }
 
 #[test]
 fn every_story_is_read_as_told() {
-    let stories = stories();
-    assert!(stories.len() >= 140, "{} stories", stories.len());
-    let mut wrong = Vec::new();
-    for story in &stories {
-        let account = account_of(&story.text).unwrap_or_else(|| panic!("{}: no account", story.name));
+    let (mut wrong, mut second) = (Vec::new(), 0);
+    for story in &stories() {
+        let account = account_of(&story.text).unwrap_or_else(|| panic!("{}: no account", story.id()));
         let facts = facts(&account);
         for (name, expected) in &story.expect {
-            let said = facts.get(name.as_str()).cloned().unwrap_or_default();
-            if !expected.split('|').any(|value| value == said) {
-                wrong.push(format!("{}: {name} is \"{said}\", not \"{expected}\"", story.name));
+            let said =
+                facts.get(name.as_str()).unwrap_or_else(|| panic!("{}: no fact has the name {name}", story.id()));
+            match expected.split('|').position(|value| value == said) {
+                Some(0) => {}
+                Some(_) => second += 1,
+                None => wrong.push(format!("{}: {name} is \"{said}\", not \"{expected}\"", story.id())),
             }
         }
     }
     assert!(wrong.is_empty(), "{} of them:\n{}", wrong.len(), wrong.join("\n"));
+    assert!(second <= SECOND_CHOICES, "{second} facts are read as a second choice");
 }
 
 /// Rules look at words before theirs: there may be none.
@@ -73,7 +113,7 @@ fn a_story_that_begins_in_its_middle_is_read() {
             begun += 1;
         }
     }
-    assert!(begun > 10_000, "{begun}");
+    assert!(begun >= 20_326, "{begun}");
 }
 
 #[test]

@@ -46,7 +46,7 @@ fn since(account: &Account) -> Option<Since> {
     let sv = &account.sv;
     let state = told(&sv.state)?;
     let before: Vec<&ActFact> = sv.acts.iter().filter(|fact| !fact.after_contact).collect();
-    let stands = |fact: &&ActFact| matches!(fact.act, Act::Stop | Act::Hold);
+    let stands = |fact: &&ActFact| fact.act.stands();
     let last_stop = before.iter().rposition(stands);
     Some(match state {
         ContactState::Parked if !waits_for_riders(sv) => Since::Parked,

@@ -342,10 +342,7 @@ fn lane_side(account: &Account) -> Option<LeftRight> {
 /// The side from which the partner changed lanes towards the subject vehicle.
 fn changed_from(account: &Account) -> Option<LeftRight> {
     let partner = account.partner.as_ref()?;
-    let change = partner
-        .acts
-        .iter()
-        .find(|fact| matches!(fact.act, Act::LaneChange | Act::Swerve | Act::Drift) && !fact.after_contact)?;
+    let change = partner.acts.iter().find(|fact| fact.act.leaves_line() && !fact.after_contact)?;
     let from = change.side?.other();
     // Whoever moves over towards it touches it on that side.
     (zone_side(account) == Some(from)).then_some(from)

@@ -6,7 +6,7 @@ use crate::fold::Reading;
 use crate::fold::types::turning;
 use crate::frame::Frame;
 use crate::lexicon::{Relation, Sense};
-use crate::token::MONTHS;
+use crate::token::{MONTHS, word};
 use crate::world::{Actor, SUBJECT};
 use recrash_model::account::{Account, Act, ActFact, Compass, LaneWord, LeftRight, PlaceKind, Source};
 use recrash_model::template::RoadType;
@@ -35,24 +35,29 @@ pub(crate) fn side_of_road_of(
 
 /// "left side of the street", "south sidewalk", of who goes west: the left one. A median is on the left.
 pub(crate) fn side_named_at(reading: &Reading<'_>, at: usize, own: Option<Compass>) -> Option<LeftRight> {
-    let word = |at: usize| reading.story.tokens.get(at).map_or("", |token| token.text.as_str());
-    let compass = |at: usize| match word(at) {
+    let compass = |at: usize| match reading.story.word(at) {
         "north" | "northern" => Some(Compass::North),
         "east" | "eastern" => Some(Compass::East),
         "south" | "southern" => Some(Compass::South),
         "west" | "western" => Some(Compass::West),
         _ => None,
     };
-    let road = |at: usize| (at..at + 5).any(|at| matches!(word(at), "road" | "roadway" | "street" | "alley" | "lot"));
-    let kerb = matches!(word(at + 1), "sidewalk" | "curb");
-    match word(at) {
+    let road = |at: usize| {
+        (at..at + 5).any(|at| matches!(reading.story.word(at), "road" | "roadway" | "street" | "alley" | "lot"))
+    };
+    let kerb = matches!(reading.story.word(at + 1), "sidewalk" | "curb");
+    match reading.story.word(at) {
         // "crossed from the center median".
-        "median" if (1..=3).any(|back| at.checked_sub(back).is_some_and(|at| matches!(word(at), "from" | "off"))) => {
+        "median"
+            if (1..=3).any(|back| {
+                at.checked_sub(back).is_some_and(|at| matches!(reading.story.word(at), "from" | "off"))
+            }) =>
+        {
             Some(LeftRight::Left)
         }
-        "left" if kerb || word(at + 1) == "side" && road(at + 2) => Some(LeftRight::Left),
-        "right" if kerb || word(at + 1) == "side" && road(at + 2) => Some(LeftRight::Right),
-        _ if kerb || word(at + 1) == "side" => match own?.eighths_to(compass(at)?) {
+        "left" if kerb || reading.story.word(at + 1) == "side" && road(at + 2) => Some(LeftRight::Left),
+        "right" if kerb || reading.story.word(at + 1) == "side" && road(at + 2) => Some(LeftRight::Right),
+        _ if kerb || reading.story.word(at + 1) == "side" => match own?.eighths_to(compass(at)?) {
             1..=3 => Some(LeftRight::Right),
             5..=7 => Some(LeftRight::Left),
             _ => None,
@@ -97,7 +102,7 @@ pub(super) fn side_of_screen(reading: &Reading<'_>, actor: Actor, own: Option<Co
     });
     let against = known.heading.is_some_and(|(heading, ..)| own.is_some_and(|own| own.eighths_to(heading) == 4));
     let opposing = against || known.lane.is_some_and(|(lane, ..)| lane == LaneWord::Opposing);
-    let stands = |act: Option<Act>| matches!(act, Some(Act::Hold | Act::Stop));
+    let stands = |act: Option<Act>| act.is_some_and(Act::stands);
     told.or(opposing.then_some(LeftRight::Left)).or_else(|| side_of_road_of(reading, actor, own, stands))
 }
 
@@ -133,23 +138,27 @@ pub(crate) fn on_side_street(reading: &Reading<'_>, actor: Actor) -> bool {
         let named = reading.story.world.actors[actor].kind_tokens.map_or(first, |(_, end)| end);
         let sentence = reading.story.sentences[frame.sentence];
         let first = if (sentence.first..first).contains(&named) { named } else { first };
-        let word = |at: usize| tokens.get(at).map_or("", |token| token.text.as_str());
         // "a cross-street taxi", "a taxi in the cross traffic".
         let own = reading.story.world.actors[actor].kind_tokens.map_or(first..first, |(from, to)| from..to);
-        let crossing =
-            |at: usize| matches!(word(at), "cross" | "intersecting") && matches!(word(at + 1), "street" | "traffic");
+        let crossing = |at: usize| {
+            matches!(word(tokens, at), "cross" | "intersecting") && matches!(word(tokens, at + 1), "street" | "traffic")
+        };
         own.into_iter().any(crossing)
             || (first..end).any(|at| {
-                let road = matches!(word(at + 1), "street" | "road" | "streets")
-                    || at > 0 && word(at - 1) == "the" && word(at) == "cross" && word(at + 1) == "traffic";
-                let crosses = matches!(word(at), "side" | "cross" | "crossing" | "intersecting" | "perpendicular");
+                let road = matches!(word(tokens, at + 1), "street" | "road" | "streets")
+                    || at > 0
+                        && word(tokens, at - 1) == "the"
+                        && word(tokens, at) == "cross"
+                        && word(tokens, at + 1) == "traffic";
+                let crosses =
+                    matches!(word(tokens, at), "side" | "cross" | "crossing" | "intersecting" | "perpendicular");
                 // "the street on its left".
-                let there = matches!(word(at), "street" | "road")
-                    && matches!(word(at + 1), "on" | "to")
-                    && (at + 2..at + 4).any(|at| matches!(word(at), "left" | "right"));
+                let there = matches!(word(tokens, at), "street" | "road")
+                    && matches!(word(tokens, at + 1), "on" | "to")
+                    && (at + 2..at + 4).any(|at| matches!(word(tokens, at), "left" | "right"));
                 // "from the perpendicular left of it".
-                let square = word(at) == "perpendicular" && matches!(word(at + 1), "left" | "right")
-                    || matches!(word(at), "street" | "road") && word(at + 1) == "perpendicular";
+                let square = word(tokens, at) == "perpendicular" && matches!(word(tokens, at + 1), "left" | "right")
+                    || matches!(word(tokens, at), "street" | "road") && word(tokens, at + 1) == "perpendicular";
                 crosses && road || there || square
             })
     })
@@ -230,7 +239,7 @@ pub(super) fn behind_in_next_lane(
     side: LeftRight,
 ) -> Option<Source> {
     let goes = |fact: &ActFact| {
-        let over = matches!(fact.act, Act::LaneChange | Act::Swerve | Act::Drift);
+        let over = fact.act.leaves_line();
         over && !fact.after_contact && fact.side == Some(side)
     };
     let both = |frame: &Frame| {

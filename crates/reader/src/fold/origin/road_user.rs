@@ -168,9 +168,7 @@ impl<'a> Case<'a> {
         let parked = case.frames().any(|(_, frame)| frame.sense == Sense::Parked);
         case.parked |= parked;
         // After a turn that is done, its new direction counts. That of a lane for turns, in which it drove, tells of no turn.
-        let turned = |fact: &&recrash_model::account::ActFact| {
-            !fact.after_contact && !fact.begun && matches!(fact.act, Act::Turn | Act::UTurn)
-        };
+        let turned = |fact: &&recrash_model::account::ActFact| fact.happened() && fact.act.turns();
         let done = account.sv.acts.iter().any(|fact| turned(&fact) && fact.done && !is_being_completed(reading, fact));
         let turned = account.sv.acts.iter().any(|fact| turned(&fact)) && !turning(&account.sv) || done;
         let turned = account.sv.heading_after.as_ref().filter(|_| turned);
@@ -218,7 +216,7 @@ impl<'a> Case<'a> {
     }
 
     fn moved_over(&self) -> bool {
-        self.did(Act::LaneChange) || self.did(Act::Swerve) || self.did(Act::Drift)
+        self.frames().any(|(_, frame)| frame.act().is_some_and(Act::leaves_line))
     }
 
     /// The words of the first frame of an act.

@@ -7,6 +7,7 @@ use crate::fold::origin::lane_side;
 use crate::fold::origin::places::{at_curb, in_stall, is_across, side_named, side_of_road, side_of_road_of, stood_in};
 use crate::frame::Frame;
 use crate::lexicon::{Relation, Sense};
+use crate::token::word;
 use crate::world::SUBJECT;
 use recrash_model::account::{Act, ActFact, ContactState, KindGroup, LeftRight, Origin, Source, told};
 use recrash_model::zones::ContactZone as Z;
@@ -37,7 +38,7 @@ impl Case<'_> {
 
     /// "stopped behind a truck that had left a driveway and stood across the road": where it stood as the subject vehicle came up to it.
     fn stood_after(&self, number: usize) -> Option<Source> {
-        let stands = |frame: &Frame| matches!(frame.act(), Some(Act::Stop | Act::Hold)) && frame.sense != Sense::Parked;
+        let stands = |frame: &Frame| frame.act().is_some_and(Act::stands) && frame.sense != Sense::Parked;
         let stood = self.frames().any(|(later, frame)| later > number && stands(frame));
         let behind = |frame: &Frame| frame.relations.contains(&(Relation::Behind, Some(self.actor)));
         let mut own = self.reading.before(SUBJECT).filter(|(_, frame)| frame.happened() && behind(frame));
@@ -141,7 +142,7 @@ impl Case<'_> {
         // "stopped in the left lane after it had left the kerb": where it stood.
         let acts = &self.partner.acts;
         let left = acts.iter().position(|fact| fact.act == Act::PullOut && !fact.after_contact);
-        let stands = |fact: &ActFact| matches!(fact.act, Act::Stop | Act::Hold) && !fact.after_contact;
+        let stands = |fact: &ActFact| fact.act.stands() && !fact.after_contact;
         let stood = left.is_some_and(|left| acts[left + 1..].iter().any(stands));
         if let (true, Some(side)) = (stood, lane_side(self.account)) {
             return by_rule(Origin::Beside { side }, "lanes of both");
@@ -193,8 +194,8 @@ impl Case<'_> {
             self.reading.story.frames.iter().any(|other| {
                 (named..frame.first).contains(&other.first) && other.who.is_some_and(|who| who != self.actor)
             });
-        let word = |at: usize| words.get(at).map_or("", |token| token.text.as_str());
-        let curb = (0..words.len()).any(|at| matches!(word(at), "curb" | "curbside") && word(at + 1) != "lane");
+        let curb =
+            (0..words.len()).any(|at| matches!(word(words, at), "curb" | "curbside") && word(words, at + 1) != "lane");
         let drove = words.iter().any(|token| matches!(token.text.as_str(), "traveling" | "driving" | "passing"));
         if others || drove || !curb {
             return None;
