@@ -26,7 +26,7 @@ mod usual;
 pub use search::open::open_choices;
 pub use search::reconstruction::Reconstruction;
 
-use crate::facts::{held, strays};
+use crate::facts::{list, strays};
 use crate::search::staged::staged;
 use crate::told::choices::Choices;
 use crate::told::crash::Told;
@@ -38,7 +38,7 @@ use recrash_roads::Scenario;
 
 /// The kinds of facts that an account tells and that can be held against a rollout, whether or not it can be staged.
 pub fn told_kinds(account: &Account) -> Vec<CheckKind> {
-    Told::read(account).map(|told| told.kinds()).unwrap_or_default()
+    Told::read(account).map(|told| list::kinds(&told)).unwrap_or_default()
 }
 
 /// Told facts of an account, held against a rollout of any scenario. Of the scenario its roads, signals and stops are looked at.
@@ -46,7 +46,7 @@ pub fn told_kinds(account: &Account) -> Vec<CheckKind> {
 /// # Errors
 /// The account cannot be staged at all.
 pub fn held_against(account: &Account, scenario: &Scenario, rollout: &Rollout) -> Result<Verdict, Untold> {
-    Ok(Verdict { checks: held::facts(&Told::of(account)?, scenario, rollout) })
+    Ok(Verdict { checks: list::facts(&Told::of(account)?, scenario, rollout) })
 }
 
 /// For how long the partner of a reconstruction is in no lane of its direction before it does what is told to take it aside; nothing

@@ -44,7 +44,8 @@ use crate::token::is_crash_noun;
 use crate::world::{Actor, Own, SUBJECT, is_no_passenger_vehicle};
 use contact::Contacts;
 use recrash_model::account::{
-    ACCOUNT_FORMAT, Account, Act, Contradiction, Fact, Kind, KindGroup, LaneWord, Origin, Other, Source, Striker, told,
+    ACCOUNT_FORMAT, Account, Act, ContactState, Contradiction, Fact, Kind, KindGroup, LaneWord, Origin, Other, Party,
+    Source, Speed, SpeedMeaning, Striker, told,
 };
 use recrash_model::incident::Incident;
 use recrash_model::kinds::PartnerKind;
@@ -687,12 +688,11 @@ fn contradictions(account: &Account, record: &CrashRecord) -> Vec<Contradiction>
             add(about, format!("{} in words", joined(&told)), format!("{} in {name}", joined(column)));
         }
     }
-    if let (Some(state), Some(speed)) = (&account.sv.state, record.sv_speed_mps)
-        && state.source.is_told()
-        && state.value.stands()
-        && speed > 0.9
-    {
-        add("sv.state", format!("{} in words", state.value.label()), format!("{speed:.1} m/s in SV Precrash Speed"));
+    for (about, party) in [("sv.state", Some(&account.sv)), ("partner.state", account.partner.as_ref())] {
+        if let Some((state, speed)) = party.and_then(state_against_speed) {
+            let kept = format!("{} {}", state.value.label(), stands_in(&state.source));
+            add(about, kept, format!("{:.1} m/s {}", speed.value.mps, stands_in(&speed.source)));
+        }
     }
     if let (Some(kind), Coded::Known(column)) =
         (account.partner.as_ref().and_then(|partner| partner.kind.as_ref()), &record.partner)
@@ -704,6 +704,25 @@ fn contradictions(account: &Account, record: &CrashRecord) -> Vec<Contradiction>
         add("partner.kind", format!("{} in words", told.label()), format!("{} in Crash With", column.label()));
     }
     all
+}
+
+/// A state at the contact, and a speed of that moment that cannot both be true: it stood, and the speed is not zero, or the other way round.
+/// A column's speed is of that moment, whatever was made of it.
+fn state_against_speed(party: &Party) -> Option<(&Fact<ContactState>, &Fact<Speed>)> {
+    let state = party.state.as_ref()?;
+    let at_contact =
+        |fact: &Fact<Speed>| fact.value.meaning == SpeedMeaning::Impact || matches!(fact.source, Source::Column { .. });
+    let against = |fact: &&Fact<Speed>| at_contact(fact) && (fact.value.mps > 0.0) == state.value.stands();
+    party.speeds.iter().find(against).map(|speed| (state, speed))
+}
+
+/// Where a fact stands, for sentences.
+fn stands_in(source: &Source) -> String {
+    match source {
+        Source::Words { .. } => "in words".to_owned(),
+        Source::Column { name } => format!("in {name}"),
+        Source::Rule { name } => format!("by the rule: {name}"),
+    }
 }
 
 fn joined(zones: &[ContactZone]) -> String {

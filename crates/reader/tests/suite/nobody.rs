@@ -74,10 +74,30 @@ fn what_columns_say_against_the_words_is_said_in_words() {
     let said: Vec<_> = account.contradictions.iter().map(|one| (one.kept.as_str(), one.against.as_str())).collect();
     for both in [
         ("rear in words", "front, front left in SV Contact Area"),
-        ("stopped in words", "4.0 m/s in SV Precrash Speed"),
+        ("stopped in words", "4.0 m/s in SV Precrash Speed (MPH)"),
         ("pickup truck in words", "pedestrian in Crash With"),
     ] {
         assert!(said.contains(&both), "{said:?}");
+    }
+}
+
+#[test]
+fn a_column_speed_that_is_zero_or_is_not_contradicts_a_state_of_the_other_kind() {
+    let stopped = "The AV was stopped at a red light on Elm Street when a pickup truck made contact with the rear of the AV with its front.";
+    let moving = "The AV was traveling north on Elm Street when a pickup truck behind it made contact with the rear of the AV with its front.";
+    for (words, mps, kept) in [
+        (stopped, 0.0, None),
+        (stopped, 0.5, Some("stopped in words")),
+        (stopped, 1.4, Some("stopped in words")),
+        (moving, 5.0, None),
+        (moving, 0.0, Some("moving in words")),
+    ] {
+        let mut told = common::record("1-1", 1, words);
+        told.sv_speed_mps = Some(mps);
+        let account = recrash_reader::account(&recrash_reader::incidents(&[told])[0]).expect("an account");
+        let said = account.contradictions.iter().find(|one| one.about == "sv.state");
+        assert_eq!(said.map(|one| one.kept.as_str()), kept, "{words} {mps}");
+        assert!(account.sv.speeds.iter().any(|speed| speed.value.mps == mps), "it is kept: {:?}", account.sv.speeds);
     }
 }
 

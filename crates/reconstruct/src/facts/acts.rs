@@ -380,7 +380,20 @@ pub(super) fn words(told: &[Doing]) -> String {
             Act::PullOver => "pulled over",
             Act::Pass => "passed",
             Act::Enter => "entered the junction",
-            _ => "parked",
+            Act::Park => "parked",
+            // No way shows these, and none of them is asked for.
+            Act::Follow => "drove on",
+            Act::OpenDoor => "opened a door",
+            Act::Cross => "crossed",
+            Act::RunRed => "ran a red light",
+            Act::RunStop => "ran a stop sign",
+            Act::FailToYield => "did not yield",
+            Act::Pushed => "was pushed",
+            Act::WrongWay => "went against the flow",
+            Act::Fall => "fell",
+            Act::LoseControl => "lost control",
+            Act::Roll => "rolled away",
+            Act::Leave => "left",
         };
         let sideless =
             matches!(doing.act, Act::Stop | Act::Hold | Act::SetOff | Act::Slow | Act::Accelerate | Act::Reverse);

@@ -42,6 +42,14 @@ pub(super) fn zone_words(zones: &[ContactZone]) -> String {
     zones.iter().map(|zone| zone.label()).collect::<Vec<_>>().join(" or ")
 }
 
+/// Who is told to have been first, and by how much it has to be.
+pub(super) fn order_words(first: FirstMover) -> String {
+    match first {
+        FirstMover::Sv | FirstMover::Cp => format!("{}, by more than {FIRST_S:.2} s", first.words()),
+        FirstMover::Both => format!("{}, within {TOGETHER_S:.2} s", first.words()),
+    }
+}
+
 /// Whether who is told to have been first was at the place of the contact first, and by how much.
 pub(super) fn order(
     first: FirstMover,

@@ -3,7 +3,7 @@
 use crate::facts::acts::{self, Did};
 use crate::facts::astride::astride;
 use crate::facts::contact::{
-    self, MET_M, Touch, crash, first_touch, is_near, order, parts_that_touch, swung, toucher, zone_words,
+    self, MET_M, Touch, crash, first_touch, is_near, order, order_words, parts_that_touch, swung, toucher, zone_words,
 };
 use crate::facts::junction::Junction;
 use crate::facts::lane::{lane, lane_words};
@@ -22,27 +22,30 @@ use crate::touch::opening::{self, DOOR_M};
 use crate::usual::{RUNS_LEAST_MPS, STANDS_MPS};
 use recrash_metrics::contact::{ContactGeometry, contact_geometry};
 use recrash_model::account::{
-    Astride, ContactState, Control as Said, ControlDevice, Kind, LaneWord, Obeyed, Origin, StandReason, Striker,
+    Astride, ContactState, Control as Said, ControlDevice, Kind, Obeyed, Origin, StandReason, Striker,
 };
 use recrash_model::geometry::OrientedBox;
-use recrash_model::metrics::{Check, CheckKind, CheckResult};
+use recrash_model::metrics::CheckResult;
 use recrash_model::rollout::{ActorState, ActorTrack, Rollout, STEP_S};
 use recrash_roads::Scenario;
 
-/// Every told fact.
-pub(crate) fn facts(told: &Told, scenario: &Scenario, rollout: &Rollout) -> Vec<Check> {
-    match Crash::of(told, scenario, rollout) {
-        Some(crash) => crash.facts(),
-        None => {
-            let none = |kind| check(kind, false, "what is told of the contact", "no contact");
-            told.kinds().into_iter().map(none).collect()
-        }
-    }
+/// One of the two who touch.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Who {
+    Ego,
+    Partner,
+}
+
+/// What was found when a fact was held against a rollout.
+pub(super) struct Found {
+    pub(super) expected: String,
+    pub(super) observed: String,
+    pub(super) result: CheckResult,
 }
 
 /// The first touch of a rollout, beside what is told of it.
-struct Crash<'a> {
-    told: &'a Told,
+pub(super) struct Crash<'a> {
+    pub(super) told: &'a Told,
     scenario: &'a Scenario,
     rollout: &'a Rollout,
     touch: Touch<'a>,
@@ -59,7 +62,7 @@ struct Crash<'a> {
 }
 
 impl<'a> Crash<'a> {
-    fn of(told: &'a Told, scenario: &'a Scenario, rollout: &'a Rollout) -> Option<Crash<'a>> {
+    pub(super) fn of(told: &'a Told, scenario: &'a Scenario, rollout: &'a Rollout) -> Option<Crash<'a>> {
         let touch = first_touch(rollout)?;
         let ego_track = rollout.ego_track();
         let ego_box = OrientedBox::new(touch.ego.pose(), ego_track.length_m, ego_track.width_m);
@@ -96,49 +99,57 @@ impl<'a> Crash<'a> {
         })
     }
 
-    fn facts(&self) -> Vec<Check> {
-        let mut list = vec![self.contact(), self.partner()];
-        list.extend(self.sv_zones());
-        list.extend(self.cp_zones());
-        list.extend(self.thing_moves());
-        list.extend(self.states());
-        list.extend(self.speeds());
-        list.extend(self.passed_on());
-        list.extend(self.movements());
-        list.extend(self.acts());
-        list.extend(self.approach());
-        list.extend(self.order());
-        list.extend(self.lanes());
-        list.extend(self.astride());
-        list.extend(self.controls());
-        list.extend(self.reason());
-        list.extend(self.others());
-        list.extend(self.above_or_below());
-        list.extend(self.door());
-        list
+    /// What is told of one of the two.
+    fn side(&self, who: Who) -> &'a Side {
+        match who {
+            Who::Ego => &self.told.sv,
+            Who::Partner => &self.told.cp,
+        }
     }
 
-    fn contact(&self) -> Check {
+    /// Its track; nothing of a partner that only stands there.
+    fn track(&self, who: Who) -> Option<&'a ActorTrack> {
+        match who {
+            Who::Ego => Some(self.ego_track),
+            Who::Partner => self.partner_track,
+        }
+    }
+
+    /// Its state when they touch.
+    fn met(&self, who: Who) -> &ActorState {
+        match who {
+            Who::Ego => &self.touch.ego,
+            Who::Partner => &self.touch.other,
+        }
+    }
+
+    pub(super) fn contact(&self) -> Found {
         let by_partner = self.touch.track.is_none_or(|track| track.id == "cp");
         let undisturbed = self.told.pushed || toucher(self.rollout, &self.touch).is_none();
+        // Of a stated movement this is said with that.
+        let slides = self.told.cp.movement.is_none() && self.partner_slides();
         let who = match (by_partner, undisturbed) {
             (true, true) => "the partner",
             (true, false) => "the partner, after another",
             (false, _) => "somebody else",
         };
         let crash = crash(self.told, self.rollout);
-        let shown = by_partner && undisturbed && crash.is_none();
+        let shown = by_partner && undisturbed && crash.is_none() && !slides;
         let crash = crash.map_or(String::new(), |crash| format!("; {crash}"));
-        let observed = format!("with {who} at {:.2} s{crash}", self.touch.time_s);
-        check(CheckKind::Contact, shown, "a contact with the partner, and none of others", observed)
+        let slides = if slides { ", which came as nobody drives" } else { "" };
+        let observed = format!("with {who}{slides} at {:.2} s{crash}", self.touch.time_s);
+        check(shown, "a contact with the partner, and none of others", observed)
     }
 
-    fn partner(&self) -> Check {
+    pub(super) fn partner(&self) -> Found {
         let (told, seen) = (self.told.cp.kind, self.touch.kind);
-        check(CheckKind::Partner, seen == told, told.label(), seen.label())
+        check(seen == told, told.label(), seen.label())
     }
 
-    fn sv_zones(&self) -> Option<Check> {
+    pub(super) fn sv_zones(&self) -> Found {
+        if self.told.sv.only_above_or_below {
+            return self.above_or_below();
+        }
         let zones = &self.told.sv.zones;
         let near = is_near(zones, self.geometry.ego_zone, &self.ego_box, self.geometry.point);
         let on_trailer = !self.told.sv_trailer || contact::is_on_own_trailer(&self.ego_box, self.geometry.point);
@@ -151,14 +162,14 @@ impl<'a> Crash<'a> {
             expected += ", on the trailer";
             observed += if on_trailer { ", on the trailer" } else { ", ahead of the trailer" };
         }
-        (!zones.is_empty()).then(|| check(CheckKind::SvZones, (near || over) && on_trailer, expected, observed))
+        check((near || over) && on_trailer, expected, observed)
     }
 
-    fn cp_zones(&self) -> Option<Check> {
-        let zones = &self.told.cp.zones;
-        if zones.is_empty() || self.told.thing.is_some() {
-            return None;
+    pub(super) fn cp_zones(&self) -> Found {
+        if self.told.cp.only_above_or_below {
+            return self.above_or_below();
         }
+        let zones = &self.told.cp.zones;
         let near = is_near(zones, self.geometry.other_zone, &self.touch.other_box, self.geometry.point);
         // Of one box, the part of it behind who draws it.
         let on_trailer = match self.trailer {
@@ -173,32 +184,31 @@ impl<'a> Crash<'a> {
             expected += ", on the trailer";
             observed += if on_trailer { ", on the trailer" } else { ", ahead of the trailer" };
         }
-        Some(check(CheckKind::CpZones, near && on_trailer, expected, observed))
+        check(near && on_trailer, expected, observed)
     }
 
     /// Whether a thing that is told to swing or to slide does.
-    fn thing_moves(&self) -> Option<Check> {
+    fn thing_moves(&self) -> Option<Found> {
         if self.told.gate_swings {
             let part = self.other_part.as_ref().zip(self.touch.track);
             let swung = part.is_some_and(|(part, track)| swung(self.rollout, track, part, self.touch.time_s));
             let observed = if swung { "its arm swung" } else { "nothing swung" };
-            return Some(check(CheckKind::CpState, swung, "swinging", observed));
+            return Some(check(swung, "swinging", observed));
         }
         let lies = self.told.is_sliding() && self.touch.track.is_none();
-        lies.then(|| check(CheckKind::CpState, false, "moving", "it lies there"))
+        lies.then(|| check(false, "moving", "it lies there"))
     }
 
-    fn states(&self) -> impl Iterator<Item = Check> {
-        let sv = Some((CheckKind::SvState, &self.told.sv, self.ego_track, &self.touch.ego));
-        let cp = self.partner_track.map(|track| (CheckKind::CpState, &self.told.cp, track, &self.touch.other));
-        let told = sv.into_iter().chain(cp).filter(|(_, side, ..)| side.state_told);
-        told.map(|(kind, side, track, seen)| self.state(kind, side, track, seen))
+    pub(super) fn cp_state(&self) -> Option<Found> {
+        self.thing_moves().or_else(|| self.state(Who::Partner))
     }
 
-    fn state(&self, kind: CheckKind, side: &Side, track: &ActorTrack, seen: &ActorState) -> Check {
+    pub(super) fn state(&self, who: Who) -> Option<Found> {
+        let (side, track, seen) = (self.side(who), self.track(who)?, self.met(who));
+        let of_partner = who == Who::Partner;
         let (told, time_s) = (self.told, self.touch.time_s);
         // Who is pushed moves when it touches; who was parked stood until then.
-        let pushed = kind == CheckKind::CpState && told.pushed && told.thing.is_none();
+        let pushed = of_partner && told.pushed && told.thing.is_none();
         let stands = |state: &ActorState| state.velocity().length() < STANDS_MPS;
         let untouched = until_touched(self.rollout, track, time_s);
         let parked = match side.state == ContactState::Parked {
@@ -210,10 +220,10 @@ impl<'a> Crash<'a> {
         let stood = stood(track, time_s);
         let (slowed, gained) = changed(track, time_s);
         let (as_told, phases) = phases::check(phase::checked(&side.phases), track, time_s);
-        let stands_so = told.stands_so(kind == CheckKind::SvState, self.scenario, seen);
-        let backs_first = told.backs_first.filter(|_| kind == CheckKind::CpState && !told.sv.phases.is_empty());
+        let stands_so = told.stands_so(!of_partner, self.scenario, seen);
+        let backs_first = told.backs_first.filter(|_| of_partner && !told.sv.phases.is_empty());
         let in_order = backs_first.is_none_or(|first| phases::back_in_order(first, self.ego_track, track, time_s));
-        let rolls_out = kind == CheckKind::CpState && told.rolls_out();
+        let rolls_out = of_partner && told.rolls_out();
         let runs = !side.runs() || seen.velocity().length() > RUNS_LEAST_MPS;
         let shown = pushed
             || !(rolls_out && stood)
@@ -251,27 +261,20 @@ impl<'a> Crash<'a> {
             expected += &format!(": {}", phase::words(phase::checked(&side.phases)));
             observed += &format!(": {phases}");
         }
-        check(kind, shown, expected, observed)
+        Some(check(shown, expected, observed))
     }
 
-    fn speeds(&self) -> impl Iterator<Item = Check> {
-        let sides = [
-            (CheckKind::SvSpeed, &self.told.sv, &self.touch.ego),
-            (CheckKind::CpSpeed, &self.told.cp, &self.touch.other),
-        ];
-        sides.into_iter().filter_map(|(kind, side, seen)| {
-            let told_mps = side.impact_mps?;
-            let speed_mps = seen.velocity().length();
-            let close = (speed_mps - told_mps).abs() <= 2.0_f64.max(0.25 * told_mps);
-            let [of, at] = if side.came_so { ["as it came", " at the contact"] } else { ["at the contact", ""] };
-            Some(check(kind, close, format!("{told_mps:.1} m/s {of}"), format!("{speed_mps:.1} m/s{at}")))
-        })
+    pub(super) fn speed(&self, who: Who) -> Option<Found> {
+        let side = self.side(who);
+        let (told_mps, speed_mps) = (side.binding_mps()?, self.met(who).velocity().length());
+        // However near it is: who stands does not move.
+        let both = (told_mps < STANDS_MPS) == (speed_mps < STANDS_MPS);
+        let close = both && (speed_mps - told_mps).abs() <= 2.0_f64.max(0.25 * told_mps);
+        let [of, at] = if side.came_so { ["as it came", " at the contact"] } else { ["at the contact", ""] };
+        Some(check(close, format!("{told_mps:.1} m/s {of}"), format!("{speed_mps:.1} m/s{at}")))
     }
 
-    fn passed_on(&self) -> Option<Check> {
-        if !self.told.pushed {
-            return None;
-        }
+    pub(super) fn passed_on(&self) -> Found {
         let before = toucher(self.rollout, &self.touch);
         let kind = self.told.pusher.and_then(Kind::partner_kind);
         let observed = before.map_or("touched by nobody before".to_owned(), |track| {
@@ -293,76 +296,80 @@ impl<'a> Crash<'a> {
         };
         let whose = kind.map_or(String::new(), |kind| format!(": {}", kind.label().to_lowercase()));
         let expected = format!("another touched the partner first{whose}");
-        Some(Check { kind: CheckKind::PassedOn, expected, observed, result })
+        Found { expected, observed, result }
     }
 
-    fn movements(&self) -> impl Iterator<Item = Check> {
-        let sv = Some((CheckKind::SvMovement, &self.told.sv, self.ego_track, self.partner_track, self.touch.other));
-        let cp = self.partner_track;
-        let cp = cp.map(|track| (CheckKind::CpMovement, &self.told.cp, track, Some(self.ego_track), self.touch.ego));
-        sv.into_iter().chain(cp).filter_map(|(kind, side, track, other, met)| {
-            let (of_partner, time_s) = (kind == CheckKind::CpMovement, self.touch.time_s);
-            let way = Way {
-                scenario: self.scenario,
-                track,
-                other,
-                met,
-                time_s,
-                keeps_lane: of_partner && self.told.keeps_its_lane(),
-                road_rad: self.ego_track.states[0].heading,
-                parks_at_kerb: of_partner && self.told.parks_behind(),
-                crosses: of_partner && matches!(self.told.origin, Origin::Cross { .. }),
-                came_along: of_partner && self.told.came_along_there(),
-            };
-            let slides = of_partner && keeping::slides(track.kind, until_touched(self.rollout, track, time_s));
-            let seen = movement::check(side, &way);
-            let (expected, result, observed) = if slides { as_nobody_drives(seen) } else { seen? };
-            Some(Check { kind, expected, observed, result })
+    pub(super) fn movement(&self, who: Who) -> Option<Found> {
+        let (side, track, of_partner) = (self.side(who), self.track(who)?, who == Who::Partner);
+        let (other, met) = match who {
+            Who::Ego => (self.partner_track, self.touch.other),
+            Who::Partner => (Some(self.ego_track), self.touch.ego),
+        };
+        let way = Way {
+            scenario: self.scenario,
+            track,
+            other,
+            met,
+            time_s: self.touch.time_s,
+            keeps_lane: of_partner && self.told.keeps_its_lane(),
+            road_rad: self.ego_track.states[0].heading,
+            parks_at_kerb: of_partner && self.told.parks_behind(),
+            crosses: of_partner && matches!(self.told.origin, Origin::Cross { .. }),
+            came_along: of_partner && self.told.came_along_there(),
+        };
+        let (expected, result, observed) = movement::check(side, &way)?;
+        Some(match of_partner && self.partner_slides() {
+            true => check(false, expected, observed + ", as nobody drives"),
+            false => Found { expected, observed, result },
         })
     }
 
-    /// What each of the two is told to have done.
-    fn acts(&self) -> impl Iterator<Item = Check> {
+    /// Whether the partner turns on the spot, slides or jumps on its way to the contact.
+    fn partner_slides(&self) -> bool {
+        let slides =
+            |track: &ActorTrack| keeping::slides(track.kind, until_touched(self.rollout, track, self.touch.time_s));
+        self.partner_track.is_some_and(slides)
+    }
+
+    /// What one of the two is told to have done.
+    pub(super) fn acts(&self, who: Who) -> Option<Found> {
         let enters = self.told.sv.enters() || self.told.cp.enters();
         let junction = enters.then(|| Junction::of(self.scenario)).flatten();
         // Where no junction is drawn nobody has entered one.
         let entered = |track| junction.as_ref().and_then(|inner| inner.entered(track));
-        let did =
-            |is_ego, told, track: Option<_>| track.map(|track| Did { is_ego, told, track, entered: entered(track) });
-        let sv = did(true, self.told.sv.acts.as_slice(), Some(self.ego_track));
-        let cp = did(false, self.told.cp.acts.as_slice(), self.partner_track);
-        let both = [(CheckKind::SvActs, &sv, &cp), (CheckKind::CpActs, &cp, &sv)];
-        let seen = both.map(|(kind, one, other)| {
-            let one = one.as_ref().filter(|one| !one.told.is_empty())?;
-            let (result, observed) = acts::check(one, other.as_ref(), self.touch.time_s);
-            Some(Check { kind, expected: acts::words(one.told), observed, result })
-        });
-        seen.into_iter().flatten()
+        let did = |who: Who| {
+            let (is_ego, told) = (who == Who::Ego, self.side(who).acts.as_slice());
+            self.track(who).map(|track| Did { is_ego, told, track, entered: entered(track) })
+        };
+        let other = if who == Who::Ego { Who::Partner } else { Who::Ego };
+        let one = did(who)?;
+        let (result, observed) = acts::check(&one, did(other).as_ref(), self.touch.time_s);
+        Some(Found { expected: acts::words(one.told), observed, result })
     }
 
     /// From where the partner came.
-    fn approach(&self) -> Option<Check> {
-        let (told, kind, touch) = (self.told, CheckKind::Approach, &self.touch);
+    pub(super) fn approach(&self) -> Option<Found> {
+        let (told, touch) = (self.told, &self.touch);
         if let Some((expected, shown, observed)) = things::check(told, &self.ego_box, &touch.other_box) {
-            return Some(check(kind, shown, expected, observed));
+            return Some(check(shown, expected, observed));
         }
         if let Some(side) = told.edge {
             let (shown, observed) = edge::check(told, side, self.scenario, &touch.ego, &touch.other_box);
-            return Some(check(kind, shown, edge::words(side), observed));
+            return Some(check(shown, edge::words(side), observed));
         }
-        let track = self.partner_track.filter(|_| told.origin_told)?;
+        let track = self.partner_track?;
         let (shown, observed) = origin(told, self.ego_track, track, touch.time_s);
         if comes_by_lane(told, self.scenario, track, touch.time_s) {
-            return Some(check(kind, false, origin_words(told), observed + ", along a lane"));
+            return Some(check(false, origin_words(told), observed + ", along a lane"));
         }
         if begins_elsewhere(told, self.scenario, track) {
-            return Some(check(kind, false, origin_words(told), observed + ", beside the place"));
+            return Some(check(false, origin_words(told), observed + ", beside the place"));
         }
-        Some(check(kind, shown, origin_words(told), observed))
+        Some(check(shown, origin_words(told), observed))
     }
 
     /// Who was there first.
-    fn order(&self) -> Option<Check> {
+    pub(super) fn order(&self) -> Option<Found> {
         let (first, track) = (self.told.order?, self.partner_track?);
         // Who stands there holds what a door of its reaches; a door of the partner's comes there when it opens, and an ego within its reach
         // was there before.
@@ -373,73 +380,52 @@ impl<'a> Crash<'a> {
         let ego_reach_m = if self.ego_part.is_some() || door.is_some() { DOOR_M } else { MET_M };
         let both = [(self.ego_track, ego_reach_m), (door.unwrap_or(track), MET_M)];
         let (shown, observed) = order(first, both, self.geometry.point, self.touch.time_s);
-        Some(check(CheckKind::Order, shown, first.words(), observed))
+        Some(check(shown, order_words(first), observed))
     }
 
-    fn lanes(&self) -> impl Iterator<Item = Check> {
-        let sides = [
-            (CheckKind::SvLane, &self.told.sv, Some(self.ego_track)),
-            (CheckKind::CpLane, &self.told.cp, self.partner_track),
-        ];
-        sides.into_iter().filter_map(|(kind, side, track)| {
-            // Who is about to turn left is in the lane from which that is done.
-            let of_ego = kind == CheckKind::SvLane;
-            let to_come = || (of_ego && self.told.waits_to_turn_left()).then_some(LaneWord::LeftTurn);
-            let (word, track) = (side.lane.filter(|_| !side.lane_to_come).or_else(to_come)?, track?);
-            let counted = self.told.counted(of_ego);
-            let expected = counted.map_or(lane_words(word).to_owned(), Counted::words);
-            let seen = lane((self.told, word), self.scenario, [self.ego_track, track], self.touch.time_s);
-            Some(held(kind, expected, seen))
-        })
+    pub(super) fn lane(&self, who: Who) -> Option<Found> {
+        let (track, of_ego) = (self.track(who)?, who == Who::Ego);
+        let word = self.told.lane_word(of_ego)?;
+        let counted = self.told.counted(of_ego);
+        let expected = counted.map_or(lane_words(word).to_owned(), Counted::words);
+        Some(held(expected, lane((self.told, word), self.scenario, [self.ego_track, track], self.touch.time_s)))
     }
 
-    /// Whether those are over a line of the road who are told to be.
-    fn astride(&self) -> impl Iterator<Item = Check> {
-        let told = self.told;
-        let sides = [
-            (CheckKind::SvAstride, told.sv.astride, Some(self.ego_track)),
-            (CheckKind::CpAstride, told.cp.astride.filter(|_| told.thing.is_none()), self.partner_track),
-        ];
+    /// Whether one of the two is over a line of the road, as it is told.
+    pub(super) fn astride(&self, who: Who) -> Option<Found> {
+        Some(self.is_over(self.side(who).astride?, self.track(who)))
+    }
+
+    fn is_over(&self, over: Astride, track: Option<&ActorTrack>) -> Found {
         let none = || (CheckResult::CannotBeShown, "not in the scene".to_owned());
-        let seen = move |over: Astride, track: Option<&ActorTrack>| {
-            track.map_or_else(none, |track| astride(over, self.scenario, track, self.touch.time_s))
-        };
-        let others = told.others_astride.iter().map(move |(number, over)| {
-            let extra = told.wanted.iter().find(|extra| extra.of.contains(number));
-            held(CheckKind::OthersAstride, over.words(), seen(*over, extra.and_then(|extra| self.seen().find(extra))))
-        });
-        let of_two = sides
-            .into_iter()
-            .filter_map(move |(kind, over, track)| Some(held(kind, over?.words(), seen(over?, track))));
-        // Of several others the one that is not.
-        of_two.chain(others.max_by_key(|check| check.result != CheckResult::Shown))
+        let seen = |track| astride(over, self.scenario, track, self.touch.time_s);
+        held(over.words(), track.map_or_else(none, seen))
     }
 
-    fn controls(&self) -> impl Iterator<Item = Check> {
-        let sides = [
-            (CheckKind::SvControl, &self.told.sv, Some(self.ego_track)),
-            (CheckKind::CpControl, &self.told.cp, self.partner_track),
-        ];
-        sides.into_iter().filter_map(|(kind, side, track)| {
-            let (said, track) = (side.control?, track?);
-            let of_partner = kind == CheckKind::CpControl;
-            let arm = signals::own_arm(self.told, self.scenario).filter(|_| of_partner);
-            let at_red = self.told.keeps_red().filter(|_| !of_partner);
-            let on_walk = of_partner && self.told.crosses_at_walk();
-            let stops_at_yellow = !of_partner && self.told.stops_at_yellow();
-            let asked = signals::Asked { said, arm, at_red, on_walk, stops_at_yellow };
-            let seen = signals::check(asked, self.scenario, track, self.touch.time_s);
-            let beside = of_partner && signals::is_beside_road(self.told);
-            Some(held(kind, signals::words(said), if beside { signals::beside_road(seen) } else { seen }))
-        })
+    /// The same of others: of several the one that is not.
+    pub(super) fn others_astride(&self) -> Option<Found> {
+        let others = self.told.others_astride.iter().map(|(number, over)| {
+            let extra = self.told.wanted.iter().find(|extra| extra.of.contains(number));
+            self.is_over(*over, extra.and_then(|extra| self.seen().find(extra)))
+        });
+        others.max_by_key(|found| found.result != CheckResult::Shown)
+    }
+
+    pub(super) fn control(&self, who: Who) -> Option<Found> {
+        let (said, track, of_partner) = (self.side(who).control?, self.track(who)?, who == Who::Partner);
+        let arm = signals::own_arm(self.told, self.scenario).filter(|_| of_partner);
+        let at_red = self.told.keeps_red().filter(|_| !of_partner);
+        let on_walk = of_partner && self.told.crosses_at_walk();
+        let stops_at_yellow = !of_partner && self.told.stops_at_yellow();
+        let asked = signals::Asked { said, arm, at_red, on_walk, stops_at_yellow };
+        let seen = signals::check(asked, self.scenario, track, self.touch.time_s);
+        let beside = of_partner && signals::is_beside_road(self.told);
+        Some(held(signals::words(said), if beside { signals::beside_road(seen) } else { seen }))
     }
 
     /// Whether the scene holds what the ego stood for.
-    fn reason(&self) -> Option<Check> {
+    pub(super) fn reason(&self) -> Found {
         let reasons = &self.told.reasons;
-        if !self.told.sv.state.stands() || reasons.is_empty() {
-            return None;
-        }
         let controlled = |device: ControlDevice| {
             let said = Said { device, state: None, obeyed: Some(Obeyed::Yes) };
             let (arm, at_red) = (None, self.told.keeps_red());
@@ -457,34 +443,28 @@ impl<'a> Crash<'a> {
             false => (CheckResult::CannotBeShown, "not in the scene".to_owned()),
         };
         let said: Vec<&str> = reasons.iter().map(|reason| reason.label()).collect();
-        Some(held(CheckKind::Reason, said.join(", "), seen))
+        held(said.join(", "), seen)
     }
 
-    fn others(&self) -> Option<Check> {
-        if self.told.others == 0 {
-            return None;
-        }
+    pub(super) fn others(&self) -> Found {
         let (all, expected, observed) = self.seen().others();
         let result = if all { CheckResult::Shown } else { CheckResult::CannotBeShown };
-        Some(held(CheckKind::Others, expected, (result, observed)))
+        held(expected, (result, observed))
     }
 
     /// Zones that are told to lie on the top or at the bottom, and nowhere else.
-    fn above_or_below(&self) -> impl Iterator<Item = Check> {
-        let sides = [(CheckKind::SvZones, &self.told.sv), (CheckKind::CpZones, &self.told.cp)];
-        sides.into_iter().filter(|(_, side)| side.only_above_or_below).map(|(kind, _)| {
-            let other_box = &self.touch.other_box;
-            let under = self.told.is_driven_over()
-                && things::goes_under(self.told, self.ego_track, self.partner_track, other_box, self.step());
-            let seen = match under {
-                true => (CheckResult::Shown, "the ego drives over it".to_owned()),
-                false => (CheckResult::CannotBeShown, "the simulator has no height".to_owned()),
-            };
-            held(kind, "top or bottom".to_owned(), seen)
-        })
+    fn above_or_below(&self) -> Found {
+        let other_box = &self.touch.other_box;
+        let under = self.told.is_driven_over()
+            && things::goes_under(self.told, self.ego_track, self.partner_track, other_box, self.step());
+        let seen = match under {
+            true => (CheckResult::Shown, "the ego drives over it".to_owned()),
+            false => (CheckResult::CannotBeShown, "the simulator has no height".to_owned()),
+        };
+        held("top or bottom".to_owned(), seen)
     }
 
-    fn door(&self) -> Option<Check> {
+    pub(super) fn door(&self) -> Option<Found> {
         let (owner, of_ego, of_other) = (self.told.door?, self.ego_part.is_some(), self.other_part.is_some());
         let by_door = if owner == Striker::Sv { of_ego } else { of_other };
         let whose = |of_ego: bool| if of_ego { "the ego's door" } else { "the partner's door" };
@@ -495,7 +475,7 @@ impl<'a> Crash<'a> {
             true => format!("{}{}", whose(of_ego), if swings { ", as it opened" } else { "" }),
         };
         let expected = format!("{}{}", whose(owner == Striker::Sv), if stood { ", which stood open" } else { "" });
-        Some(check(CheckKind::Door, by_door && !swings, expected, observed))
+        Some(check(by_door && !swings, expected, observed))
     }
 
     /// Whether the door that touched was still opening.
@@ -517,13 +497,13 @@ impl<'a> Crash<'a> {
     }
 }
 
-fn check(kind: CheckKind, shown: bool, expected: impl Into<String>, observed: impl Into<String>) -> Check {
+fn check(shown: bool, expected: impl Into<String>, observed: impl Into<String>) -> Found {
     let result = if shown { CheckResult::Shown } else { CheckResult::NotShown };
-    Check { kind, expected: expected.into(), observed: observed.into(), result }
+    Found { expected: expected.into(), observed: observed.into(), result }
 }
 
-fn held(kind: CheckKind, expected: String, (result, observed): (CheckResult, String)) -> Check {
-    Check { kind, expected, observed, result }
+fn held(expected: String, (result, observed): (CheckResult, String)) -> Found {
+    Found { expected, observed, result }
 }
 
 /// What is said of how somebody came to the contact.
@@ -535,11 +515,4 @@ fn before(stood: bool, slowed: bool, gained: bool) -> &'static str {
         (false, false, true) => ", had gained speed",
         (false, false, false) => "",
     }
-}
-
-/// What is said of a movement that nobody drives, whatever is told of it.
-fn as_nobody_drives(check: Option<(String, CheckResult, String)>) -> (String, CheckResult, String) {
-    let (expected, seen) = check.map_or_else(Default::default, |(expected, _, seen)| (expected, seen + ", "));
-    let expected = if expected.is_empty() { "as somebody drives".to_owned() } else { expected };
-    (expected, CheckResult::NotShown, seen + "as nobody drives")
 }

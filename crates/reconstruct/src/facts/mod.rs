@@ -1,13 +1,15 @@
-//! The checks of told facts against a rollout, a file for each kind of fact, and `held` that asks for all. No staging is looked at here.
+//! The checks of stated facts against a rollout, a file for each kind of fact: `list` names them all, `held` asks. How the crash was staged
+//! is not asked, but for the roads, signals and stops of its scenario.
 
 mod acts;
 mod astride;
 mod contact;
 mod edge;
-pub(crate) mod held;
+mod held;
 mod junction;
 pub(crate) mod keeping;
 mod lane;
+pub(crate) mod list;
 pub(crate) mod movement;
 pub(crate) mod near;
 mod origin;

@@ -1,7 +1,6 @@
 //! What the ego is told to have driven over or under, held against its way.
 
 use crate::told::crash::Told;
-use crate::told::edge::LONG_M;
 use crate::told::lies::Lies;
 use crate::told::zones::side_of;
 use crate::usual::STANDS_MPS;
@@ -90,14 +89,13 @@ const WHEELS_M: (f64, f64) = (0.35, 1.3);
 /// What bars the ego's way is across it within this angle. [deg]
 const ACROSS_DEG: f64 = 30.0;
 
-/// Whether what bars the ego's way is across it: "a chain hung across the entrance"; what is short bars none.
+/// Whether what bars the ego's way is across it.
 fn bars(told: &Told, ego: &OrientedBox, other: &OrientedBox) -> Option<(String, bool, String)> {
     let along = other.half_length > other.half_width;
     let long = if along { other.axis } else { other.axis.left() };
-    let is_long = 2.0 * other.half_length.max(other.half_width) > LONG_M;
     let off_deg = math::acos(long.dot(ego.axis.left()).abs().min(1.0)).to_degrees();
     let seen = format!("at {off_deg:.0} degrees to its front");
-    ((told.bars_way() || told.stands_across()) && is_long).then(|| (ACROSS.to_owned(), off_deg <= ACROSS_DEG, seen))
+    told.lies_across().then(|| (ACROSS.to_owned(), off_deg <= ACROSS_DEG, seen))
 }
 
 /// What reaches into the lane from beside it does so from farther aside than the ego's flank. [m]

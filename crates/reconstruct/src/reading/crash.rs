@@ -20,11 +20,25 @@ use recrash_model::account::{
 };
 use recrash_model::narrative::FirstMover;
 
+/// What stands before "vehicle" where that is the subject vehicle.
+const SUBJECTS: [&str; 9] =
+    ["ego", "subject", "autonomous", "automated", "test", "host", "driverless", "self-driving", "our"];
+
+/// Whether words name something of the subject vehicle, whatever company runs it: "the Zoox AV's lane", "the ego vehicle's lane".
+fn names_subjects(words: &str) -> bool {
+    let words: Vec<String> = words.split_whitespace().map(|word| word.replace('\u{2019}', "'")).collect();
+    let is_subject = |at: usize| match words[at].as_str() {
+        "av's" | "adv's" | "ego's" | "sv's" => true,
+        "vehicle's" => at > 0 && SUBJECTS.contains(&words[at - 1].as_str()),
+        _ => false,
+    };
+    (0..words.len()).any(is_subject)
+}
+
 /// Who comes towards the ego partly in that one's lane is over the line between the directions; not who is over one between two of its own.
 fn over_from(over: &Fact<Astride>, origin: Origin) -> Astride {
     let words = text(&over.source);
-    let of_sv =
-        ["the av's", "waymo av's", "ego's", "opposing", "opposite", "oncoming"].iter().any(|word| words.contains(word));
+    let of_sv = names_subjects(&words) || ["opposing", "opposite", "oncoming"].iter().any(|word| words.contains(word));
     match (over.value.line, origin) {
         (LaneLine::Lanes, Origin::Opposite) if of_sv => Astride { line: LaneLine::Centre, side: None, ..over.value },
         _ => over.value,

@@ -2,7 +2,7 @@
 
 use crate::draft::scenario;
 use crate::facts::keeping::ABSURD;
-use crate::facts::{held, strays};
+use crate::facts::{list, strays};
 use crate::ground::way::Ground;
 use crate::nearby::placed;
 use crate::search::reconstruction::{Reconstruction, is_deed_left_open};
@@ -106,7 +106,7 @@ impl Search {
             self.refused += 1;
             return false;
         }
-        let verdict = Verdict { checks: held::facts(told, &scenario, &rollout) };
+        let verdict = Verdict { checks: list::facts(told, &scenario, &rollout) };
         // What misses more than the best is looked at no closer.
         if self.best.as_ref().is_some_and(|best| verdict.failures().count() > best.cost.0) {
             return self.is_enough();
@@ -210,7 +210,7 @@ impl Best {
         }
         let (draft, rollout, assumed) = placed::with_near(&told, &ground, (made.draft.clone(), made.rollout.clone()));
         let Ok(checked) = check_on(draft, Some(&ground.network)) else { return made };
-        let verdict = Verdict { checks: held::facts(&told, &checked.value, &rollout) };
+        let verdict = Verdict { checks: list::facts(&told, &checked.value, &rollout) };
         if verdict.failures().count() > 0 || !starts_apart(&rollout) {
             return made;
         }

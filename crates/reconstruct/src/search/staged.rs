@@ -1,6 +1,6 @@
 //! The first telling of a crash that shows every told fact, else the one that shows most.
 
-use crate::facts::held;
+use crate::facts::list;
 use crate::search::best::{Found, acts_left_open, is_of_acts, left_open, searched};
 use crate::search::reconstruction::Reconstruction;
 use crate::told::crash::Told;
@@ -37,7 +37,7 @@ pub(crate) fn staged(told: Told, account: &Account) -> Result<Reconstruction, Un
 /// The same, held against all that is told, and not against what was told for it.
 fn held_again(found: Found, asked: &Told) -> Found {
     let Ok(scenario) = check(found.made.draft.clone()) else { return found };
-    let checks = held::facts(asked, &scenario.value, &found.made.rollout);
+    let checks = list::facts(asked, &scenario.value, &found.made.rollout);
     Found { made: Reconstruction { verdict: Verdict { checks }, ..found.made }, strays: found.strays }
 }
 

@@ -12,7 +12,6 @@ use recrash_model::account::{
     Act, Astride, ContactState, Control, ControlDevice, CrashType, EarlierTouch, Kind, LeftRight, Obeyed, Origin,
     PlaceKind, SignalState, StandReason, Striker,
 };
-use recrash_model::metrics::CheckKind;
 use recrash_model::narrative::FirstMover;
 use recrash_model::template::Movement;
 
@@ -146,38 +145,9 @@ pub(crate) struct Told {
 }
 
 impl Told {
-    /// The kinds of facts that are told and can be held against a rollout.
-    pub(crate) fn kinds(&self) -> Vec<CheckKind> {
-        let (sv, cp) = (&self.sv, &self.cp);
-        let moves = !(self.thing.is_some() && cp.state.stands());
-        let of = [
-            (CheckKind::Contact, true),
-            (CheckKind::Partner, true),
-            (CheckKind::SvZones, !sv.zones.is_empty() || sv.only_above_or_below),
-            (CheckKind::CpZones, !cp.zones.is_empty() && self.thing.is_none() || cp.only_above_or_below),
-            (CheckKind::SvState, sv.state_told),
-            (CheckKind::CpState, cp.state_told && moves || self.gate_swings),
-            (CheckKind::SvSpeed, sv.impact_mps.is_some()),
-            (CheckKind::CpSpeed, cp.impact_mps.is_some()),
-            (CheckKind::SvMovement, sv.movement.is_some()),
-            (CheckKind::CpMovement, cp.movement.is_some() && moves),
-            (CheckKind::SvActs, !sv.acts.is_empty()),
-            (CheckKind::CpActs, !cp.acts.is_empty() && moves),
-            (CheckKind::Approach, self.origin_told && moves || self.edge.is_some() || self.lies.is_some()),
-            (CheckKind::Order, self.order.is_some() && moves),
-            (CheckKind::PassedOn, self.pushed),
-            (CheckKind::SvLane, sv.lane.is_some() && !sv.lane_to_come),
-            (CheckKind::CpLane, cp.lane.is_some() && !cp.lane_to_come && moves),
-            (CheckKind::SvAstride, sv.astride.is_some()),
-            (CheckKind::CpAstride, cp.astride.is_some() && self.thing.is_none()),
-            (CheckKind::OthersAstride, !self.others_astride.is_empty()),
-            (CheckKind::SvControl, sv.control.is_some()),
-            (CheckKind::CpControl, cp.control.is_some() && moves),
-            (CheckKind::Reason, sv.state.stands() && !self.reasons.is_empty()),
-            (CheckKind::Others, self.others > 0),
-            (CheckKind::Door, self.door.is_some()),
-        ];
-        of.into_iter().filter(|(_, told)| *told).map(|(kind, _)| kind).collect()
+    /// Whether the partner does more than stand there, or swing.
+    pub(crate) fn partner_acts(&self) -> bool {
+        !(self.thing.is_some() && self.cp.state.stands()) && !self.gate_swings
     }
 
     /// Whether the ego is told to have come into the junction.

@@ -188,6 +188,18 @@ pub(crate) fn least(act: Act) -> Option<Least> {
         Act::PullOut | Act::PullOver | Act::Park => Least::Any,
         Act::Pass => Least::By,
         Act::Enter => Least::In,
-        _ => return None,
+        // Of these a way shows nothing of its own, or another fact holds them: signals, who threw whom, doors.
+        Act::Follow
+        | Act::OpenDoor
+        | Act::Cross
+        | Act::RunRed
+        | Act::RunStop
+        | Act::FailToYield
+        | Act::Pushed
+        | Act::WrongWay
+        | Act::Fall
+        | Act::LoseControl
+        | Act::Roll
+        | Act::Leave => return None,
     })
 }

@@ -46,6 +46,13 @@ impl Told {
         self.layout.left_to_come && self.sv.lane.is_none() && street && plain
     }
 
+    /// In which lane one of the two is told to be: who is about to turn left is in the one from which that is done.
+    pub(crate) fn lane_word(&self, of_ego: bool) -> Option<LaneWord> {
+        let side = if of_ego { &self.sv } else { &self.cp };
+        let to_turn = || (of_ego && self.waits_to_turn_left()).then_some(LaneWord::LeftTurn);
+        side.lane.filter(|_| !side.lane_to_come).or_else(to_turn)
+    }
+
     /// Whether the partner is told to have driven where no lane of its direction is.
     pub(crate) fn drives_elsewhere(&self) -> bool {
         self.cp.movement == Some(Movement::WrongWay) || self.cp.lane == Some(LaneWord::Opposing)

@@ -2,6 +2,7 @@
 
 use crate::told::doing::Doing;
 use crate::told::phase::Phase;
+use crate::usual::STANDS_MPS;
 use recrash_model::account::{Act, Astride, ContactState, Control, LaneWord, LeftRight, Manner};
 use recrash_model::kinds::PartnerKind;
 use recrash_model::scenario::Size;
@@ -126,6 +127,13 @@ pub(crate) struct Side {
 }
 
 impl Side {
+    /// The stated speed at the contact to which it is held: none where its stated state overrules that, since it stood by one of them and
+    /// moved by the other. [m/s]
+    pub(crate) fn binding_mps(&self) -> Option<f64> {
+        let overruled = |mps: f64| self.state_told && (mps < STANDS_MPS) != self.state.stands();
+        self.impact_mps.filter(|mps| !overruled(*mps))
+    }
+
     /// Whether it parks, or comes from the kerb or out of a stall.
     pub(super) fn is_slow(&self) -> bool {
         matches!(self.movement, Some(Movement::EnteringTraffic | Movement::ParkingManeuver))

@@ -1,6 +1,8 @@
 //! Questions to what is told of a thing: whether it moves, stands across, or lies where the ego drives over it.
 
 use crate::told::crash::Told;
+use crate::told::edge::LONG_M;
+use crate::told::side::size_of;
 use crate::told::zones::side_of;
 use recrash_model::account::{ContactState, Kind, LeftRight};
 use recrash_model::kinds::PartnerKind;
@@ -45,6 +47,17 @@ impl Told {
         let bars = matches!(self.thing, Some(Kind::Chain | Kind::Gate | Kind::Barrier));
         let front = self.sv.zones.is_empty() || self.sv.zones.iter().any(|zone| zone.is_front());
         bars && front && self.cp.state.stands() && self.lies.is_none() && self.edge.is_none() && !self.gate_swings
+    }
+
+    /// Whether what bars the ego's way is long enough to lie across it: "a chain hung across the entrance".
+    pub(crate) fn lies_across(&self) -> bool {
+        let (length_m, width_m) = size_of(&self.cp);
+        (self.bars_way() || self.stands_across()) && length_m.max(width_m) > LONG_M
+    }
+
+    /// Whether it is told, or known of its kind, how the partner lies, hangs or reaches into the ego's way.
+    pub(crate) fn has_told_place(&self) -> bool {
+        self.lies.is_some() || self.lies_across() || self.reaches_in.is_some()
     }
 
     /// Whether the partner is a thing that came into the way by itself.

@@ -133,6 +133,19 @@ fn who_comes_towards_the_ego_between_two_lanes_of_its_own_is_not_over_the_line_b
     assert_ne!(over.result, CheckResult::Shown, "{over:?}");
 }
 
+#[test]
+fn whose_lane_it_is_depends_on_no_company() {
+    for subject in ["AV", "Waymo AV", "Zoox AV", "Cruise AV", "ego vehicle", "test vehicle", "autonomous vehicle"] {
+        let text = format!(
+            "The {subject} was traveling north on Elm Street. An oncoming truck was driving partially in the {subject}'s lane \
+             and its front left made contact with the front left of the {subject}."
+        );
+        let over = reconstruct(&story(&text)).unwrap();
+        let over = check(&over, CheckKind::CpAstride);
+        assert!(over.expected.contains("between the directions"), "{subject}: {over:?}");
+    }
+}
+
 const SHOULDER: &str = "The AV was traveling in the left lane. A sedan behind was driving partially on the right shoulder, passed the AV on the right and \
                         its front left made contact with the rear right of the AV.";
 

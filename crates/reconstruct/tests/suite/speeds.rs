@@ -103,3 +103,53 @@ fn who_goes_straight_on_across_a_turn_does_not_bend_for_it() {
     let bent = (met.heading - states[0].heading).to_degrees().abs();
     assert!(bent < 5.0, "{bent}");
 }
+
+/// The account of a report with this column speed. [m/s]
+fn with_column(text: &str, mps: f64) -> Account {
+    let mut record = crate::common::record("1-1", 1, text);
+    record.sv_speed_mps = Some(mps);
+    recrash_reader::account(&recrash_reader::incidents(&[record])[0]).expect("an account")
+}
+
+const HIT_AT_A_LIGHT: &str = "The AV was stopped at a red light on Elm Street. A van approached from behind and the front of the van made contact with the rear of the AV.";
+
+const HIT_ON_ITS_WAY: &str = "The AV was traveling north on Elm Street. A van approached from behind and the front of the van made contact with the rear of the AV.";
+
+#[test]
+fn a_speed_that_the_state_overrules_is_no_stated_fact() {
+    for (text, mps, is_stated) in [
+        (HIT_AT_A_LIGHT, 0.0, true),
+        (HIT_AT_A_LIGHT, 1.34, false),
+        (HIT_ON_ITS_WAY, 5.0, true),
+        (HIT_ON_ITS_WAY, 0.0, false),
+    ] {
+        let account = with_column(text, mps);
+        let made = made(&account);
+        let held = made.verdict.checks.iter().any(|check| check.kind == CheckKind::SvSpeed);
+        assert_eq!(held, is_stated, "{text} {mps}");
+        assert_eq!(account.contradictions.is_empty(), is_stated, "{:?}", account.contradictions);
+    }
+}
+
+#[test]
+fn who_stands_does_not_show_a_speed_however_small() {
+    let stands = made(&with_column(HIT_AT_A_LIGHT, 0.0));
+    let mut moves = with_column(HIT_AT_A_LIGHT, 1.34);
+    moves.sv.state = None;
+    let scenario = recrash_roads::check(stands.draft).unwrap().value;
+    let held = recrash_reconstruct::held_against(&moves, &scenario, &stands.rollout).unwrap();
+    let speed = held.checks.iter().find(|check| check.kind == CheckKind::SvSpeed).unwrap();
+    assert_eq!(speed.result, CheckResult::NotShown, "{speed:?}");
+}
+
+#[test]
+fn an_order_that_is_not_shown_says_by_how_much_it_has_to_be() {
+    let mut account = story(HIT_AT_A_LIGHT);
+    account.order =
+        Some(recrash_model::account::Fact::by_rule(recrash_model::narrative::FirstMover::Cp, "made for this test"));
+    let stands = made(&story(HIT_AT_A_LIGHT));
+    let scenario = recrash_roads::check(stands.draft).unwrap().value;
+    let held = recrash_reconstruct::held_against(&account, &scenario, &stands.rollout).unwrap();
+    let order = held.checks.iter().find(|check| check.kind == CheckKind::Order).unwrap();
+    assert_eq!(order.expected, "the partner, by more than 0.10 s");
+}

@@ -3,7 +3,7 @@
 use crate::common::account_of;
 use recrash_model::account::{Account, Control, ControlDevice, Fact};
 use recrash_model::metrics::{CheckKind, CheckResult};
-use recrash_reconstruct::{Reconstruction, reconstruct};
+use recrash_reconstruct::{Reconstruction, reconstruct, told_kinds};
 
 const STORIES: &str = include_str!("../../../reader/tests/suite/stories.toml");
 
@@ -38,6 +38,31 @@ fn most_mini_narratives_are_shown_as_told() {
     for (name, _, made) in &shown {
         assert!(made.verdict.checks.len() >= 3, "{name}: {:?}", made.verdict);
         assert!(made.rollout.ego == "recorded");
+    }
+}
+
+#[test]
+fn every_stated_fact_has_a_verdict_and_nothing_else_has_one() {
+    let more = [
+        (
+            "a chain across",
+            "The AV was traveling north into a parking lot when the front of the AV made contact with a chain hung across the entrance.",
+        ),
+        (
+            "a branch",
+            "The AV was traveling north on Elm Street when a tree branch hanging into the lane from the right made contact with the right side of the AV.",
+        ),
+        (
+            "about to turn",
+            "The AV was stopped at a red light on Elm Street, waiting to turn left onto Oak Street. A van approached from behind and the front of the van \
+                           made contact with the rear of the AV.",
+        ),
+    ];
+    let more = more.into_iter().map(|(name, text)| (name.to_owned(), account_of(text).expect("a story")));
+    for (name, account) in accounts().into_iter().chain(more) {
+        let Ok(made) = reconstruct(&account) else { continue };
+        let held: Vec<CheckKind> = made.verdict.checks.iter().map(|check| check.kind).collect();
+        assert_eq!(held, told_kinds(&account), "{name}");
     }
 }
 
