@@ -1,7 +1,7 @@
 //! Options of the roles, and of how language models are asked.
 
 use clap::{Args, ValueEnum};
-use recrash_pipeline::{AnswerMode, Caps, Cast, ModelAccess, Reads};
+use recrash_pipeline::{AnswerMode, Caps, Cast, ModelAccess, RULES, Reads};
 use std::path::PathBuf;
 
 /// Takes a model that is cast to review away again.
@@ -99,9 +99,10 @@ pub enum Llm {
 }
 
 impl ModelArgs {
-    /// Whether who plays a role was typed.
-    pub fn names_a_model(&self) -> bool {
-        [&self.agent, &self.paraphrase, &self.design, &self.tune, &self.review].into_iter().any(Option::is_some)
+    /// The language models that were typed, whichever role each was typed for.
+    pub fn named(&self) -> Vec<String> {
+        let typed = [&self.agent, &self.paraphrase, &self.design, &self.tune, &self.review];
+        typed.into_iter().flatten().filter(|name| *name != RULES && *name != NOBODY).cloned().collect()
     }
 
     /// The cast that was typed, over `base`.

@@ -7,8 +7,8 @@ use recrash_model::profile::Dedupe;
 use recrash_model::selection::{Strategy, Weighting};
 use recrash_model::tuning::Aim;
 use recrash_pipeline::{
-    EmbeddingKind, FILTER_HELP, Options, Patience, Permissions, PipelineError, RecordSource, Resources, SimulatorKind,
-    Suite,
+    EmbeddingKind, FILTER_HELP, MayAsk, Options, Patience, Permissions, PipelineError, RecordSource, Resources,
+    SimulatorKind, Suite,
 };
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -131,7 +131,7 @@ pub struct SuiteArgs {
     /// Simulator: native, or metadrive (needs Python with metadrive-simulator 0.4.3). [default: native]
     #[arg(long, value_name = "NAME")]
     pub sim: Option<SimulatorKind>,
-    /// Python interpreter for MetaDrive.
+    /// Python interpreter for MetaDrive, and for an ego py:MODULE:NAME.
     #[arg(long, value_name = "FILE", env = "RECRASH_PYTHON", default_value = "python3")]
     pub python: PathBuf,
     /// System under test: metadrive-idm, idm, reference, metadrive-expert (on metadrive), a program of yours as
@@ -187,7 +187,7 @@ pub struct EgoArgs {
     /// Simulator: native, or metadrive (needs Python with metadrive-simulator 0.4.3). [default: native]
     #[arg(long, value_name = "NAME")]
     pub sim: Option<SimulatorKind>,
-    /// Python interpreter for MetaDrive.
+    /// Python interpreter for MetaDrive, and for an ego py:MODULE:NAME.
     #[arg(long, value_name = "FILE", env = "RECRASH_PYTHON", default_value = "python3")]
     pub python: PathBuf,
     /// Worker threads; the results do not depend on it. [default: as many as there are cores]
@@ -330,8 +330,8 @@ impl SuiteArgs {
     /// What may be done with a suite that is there already.
     pub fn permissions(&self) -> Permissions {
         let Self { replace, discard_edits, reselect, .. } = *self;
-        let ask_models = self.trust || self.models.names_a_model();
-        Permissions { replace, discard_edits, reselect, trust: self.trust || self.ego.is_some(), ask_models }
+        let models = if self.trust { MayAsk::All } else { MayAsk::Named(self.models.named()) };
+        Permissions { replace, discard_edits, reselect, trust: self.trust || self.ego.is_some(), models }
     }
 
     /// How long a program that is the ego is waited for.

@@ -28,7 +28,7 @@ pub use error::{Choice, PipelineError};
 pub use files::output::{Begun, Output, Outputs};
 pub use files::paths::quoted;
 pub use files::store::{Store, WriteFile, remove_unfinished};
-pub use models::cast::{AgentLog, Cast, Reads};
+pub use models::cast::{AgentLog, Cast, RULES, Reads};
 pub use models::ledger::{LedgerReport, ModelSum, Sum as LedgerSum, ledger};
 pub use models::{AnswerMode, ModelAccess};
 pub use options::{Options, RecordSource};
@@ -52,14 +52,15 @@ pub use recrash_report::comparison::{github as github_annotations, sentence as c
 pub use recrash_report::picture;
 pub use recrash_roads::scenario_schema as schema;
 pub use simulators::external::{
-    EGO_COMMAND_PREFIX, EgoCommand, EgoFault, ExternalEgo, Patience, told_at_reset, told_at_step,
+    EGO_COMMAND_PREFIX, EgoCommand, EgoFault, ExternalEgo, Patience, default_python, told_at_reset, told_at_step,
 };
 pub use simulators::{Simulator, SimulatorKind, metadrive_egos, start_simulator};
 pub use stages::{
     AccountSummary, CaseSummary, DesignAttempt, DesignLog, Failure, FallbackReason, ModelSummary, Reviews, RunSummary,
-    SelectionStudy, StageReport, StrategyStudy, Summary, TestedRuns, check_choices, run_stage, unfaithful,
+    SelectionStudy, StageReport, StrategyStudy, Summary, TestedRuns, check_choices, must_be_ready, run_stage,
+    unfaithful,
 };
-pub use suite::{Permissions, Resources, Stage, Suite};
+pub use suite::{MayAsk, Permissions, Resources, Stage, Suite};
 pub use tools::accounts::{account_table, write_accounts};
 pub use tools::assessing::{SevereFailure, SuiteSeverity, suite_coverage, suite_severity};
 pub use tools::bench_sim::{SimBench, SimBenchRequest, bench_sim};

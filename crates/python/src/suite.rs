@@ -5,7 +5,8 @@ use crate::host::interpreter;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use recrash_pipeline::{
-    Options, Permissions, PipelineError, Progress, ProgressEvent, Resources, Stage, Suite, check_choices, run_stage,
+    Options, Permissions, PipelineError, Progress, ProgressEvent, Resources, Stage, Suite, check_choices,
+    must_be_ready, run_stage,
 };
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
@@ -91,6 +92,9 @@ pub fn run_suite(
     let work = || {
         let suite = Suite::open(&folder, options, resources)?;
         check_choices(&suite)?;
+        if last >= Stage::Simulate {
+            must_be_ready(&suite)?;
+        }
         for stage in Stage::ALL.into_iter().filter(|stage| *stage <= last) {
             run_stage(&suite, stage, &reporter)?;
         }

@@ -29,6 +29,14 @@ pub trait Answers: Send + Sync {
     /// # Errors
     /// [`AskError`].
     fn answer(&self, question: &Question) -> Result<Exchange, AskError>;
+
+    /// Whether questions can be asked at all, as far as that is seen without asking one.
+    ///
+    /// # Errors
+    /// [`AskError::Refused`]: a key is missing, or nobody is at an address.
+    fn ready(&self) -> Result<(), AskError> {
+        Ok(())
+    }
 }
 
 /// Why there is no answer.

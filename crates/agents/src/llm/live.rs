@@ -82,9 +82,13 @@ impl Live {
         }
     }
 
-    fn ask(&self, question: &Question) -> Result<Exchange, AskError> {
+    fn checked(&self) -> Result<(), AskError> {
         let ready = self.ready.get_or_init(|| self.check_models());
-        ready.clone().map_err(AskError::Refused)?;
+        ready.clone().map_err(AskError::Refused)
+    }
+
+    fn ask(&self, question: &Question) -> Result<Exchange, AskError> {
+        self.checked()?;
         let mut retries = 0;
         loop {
             self.wait_for_turn();
@@ -245,6 +249,10 @@ impl Answers for Live {
         self.spending.add(&exchange);
         self.ledger.keep(&exchange).map_err(AskError::Ledger)?;
         Ok(exchange)
+    }
+
+    fn ready(&self) -> Result<(), AskError> {
+        self.checked()
     }
 }
 

@@ -4,6 +4,7 @@ use super::review::in_one_line;
 use super::staging::Staging;
 use super::{LanguageModel, fitting, prompts, push_repair, push_turns, read, restage_question};
 use crate::{AgentError, Brief};
+use recrash_model::metrics::Check;
 use recrash_model::scenario::{
     Actor, ActorPlan, Author, Control, GraphMap, MapSpec, MissionStop, ObjectSpec, Part, RoadSpec, ScenarioDraft,
 };
@@ -79,6 +80,52 @@ struct EgoAnswer {
 }
 
 impl RestageAnswer {
+    /// What of the answer contradicts the rest of it, or names no told fact: nobody can tell which half of it is meant.
+    fn contradictions(&self, now: &Staging) -> Vec<String> {
+        let mut problems = Vec::new();
+        let changes = self.changes();
+        if !changes.is_empty() && (self.as_told || !self.wrong_facts.is_empty()) {
+            let said = if self.as_told { "as_told is true" } else { "wrong_facts is given" };
+            problems.push(format!("{said}, and {} is given: then nothing is changed", changes.join(", ")));
+        }
+        if self.as_told && !in_one_line(&self.note).is_empty() {
+            problems.push(
+                "as_told is true, and note is not empty: where something is shown otherwise than told, as_told is false"
+                    .to_owned(),
+            );
+        }
+        if self.as_told && now.missed.is_empty() && !self.wrong_facts.is_empty() {
+            problems.push(
+                "as_told is true, wrong_facts is given, and the replay misses no told fact: where it shows what the reports do \
+                 not tell, as_told is false"
+                    .to_owned(),
+            );
+        }
+        let strays = self.wrong_facts.iter().filter(|fact| !now.checks.iter().any(|check| names(fact, check)));
+        let mut labels: Vec<&str> = now.checks.iter().map(|check| check.kind.label()).collect();
+        labels.dedup();
+        problems.extend(strays.map(|fact| {
+            let (fact, labels) = (in_one_line(fact), labels.join(", "));
+            format!("wrong_facts: \"{fact}\" names no told fact of the list; begin each with the fact's name: {labels}")
+        }));
+        problems
+    }
+
+    /// The fields that change the scenario.
+    fn changes(&self) -> Vec<&'static str> {
+        let given = [
+            ("ego", self.ego.is_some()),
+            ("actors", !self.actors.is_empty()),
+            ("without", !self.without.is_empty()),
+            ("objects", self.objects.is_some()),
+            ("control", self.control.is_some()),
+            ("roads", !self.roads.is_empty()),
+            ("map", self.map.is_some()),
+            ("duration_s", self.duration_s.is_some()),
+        ];
+        given.into_iter().filter(|(_, is_given)| *is_given).map(|(field, _)| field).collect()
+    }
+
     /// The scenario with what is otherwise in it.
     ///
     /// # Errors
@@ -127,6 +174,18 @@ fn lay_over<T>(known: &mut Vec<T>, others: Vec<T>, id: impl Fn(&T) -> &String) {
     }
 }
 
+/// Whether a text names this told fact: by its name at the beginning, or in the words in which it is told.
+fn names(text: &str, check: &Check) -> bool {
+    /// A shorter text stands in many others.
+    const TELLING: usize = 6;
+    let text = in_one_line(text).to_lowercase();
+    let text = text.trim_start_matches(|letter: char| !letter.is_alphanumeric());
+    let behind = text.strip_prefix(&check.kind.label().to_lowercase());
+    let is_named = behind.is_some_and(|rest| !rest.starts_with(|letter: char| letter.is_alphanumeric()));
+    let expected = in_one_line(&check.expected).to_lowercase();
+    is_named || (expected.len() >= TELLING && text.contains(&expected))
+}
+
 impl LanguageModel<'_> {
     /// Has the model look at the replay of a staging, and change the scenario until it finds the crash shown as it is told; every
     /// changed scenario is staged by `stage`, and its replay goes back. Gives the one that the model is content with: that which it was
@@ -147,7 +206,11 @@ impl LanguageModel<'_> {
             let exchange = self.answers.answer(&question)?;
             let answered = read(&exchange.answer, &[], &question.schema).and_then(fitting::<RestageAnswer>);
             let of_form = answered.is_err();
-            let step = match answered {
+            let clear = answered.and_then(|answer| match answer.contradictions(&now) {
+                problems if problems.is_empty() => Ok(answer),
+                problems => Err(problems),
+            });
+            let step = match clear {
                 Ok(answer) if answer.as_told && now.missed.is_empty() => return Ok(now),
                 Ok(answer) if !answer.wrong_facts.is_empty() => {
                     let facts: Vec<String> = answer.wrong_facts.iter().map(|fact| in_one_line(fact)).collect();

@@ -104,9 +104,8 @@ fn a_change_is_staged_and_its_replay_goes_back_until_the_model_is_content() {
 
 #[test]
 fn a_fact_that_the_reports_do_not_tell_ends_it() {
-    let wrong =
-        json!({"as_told": false, "note": "", "wrong_facts": ["approach: from behind;\n it is told from ahead"]});
-    let says = "m says that the reports do not tell what is checked: approach: from behind; it is told";
+    let wrong = json!({"as_told": false, "note": "", "wrong_facts": ["cp acts: set off;\n it is told to have stood"]});
+    let says = "m says that the reports do not tell what is checked: cp acts: set off; it is told";
     let mut content = wrong.clone();
     content["as_told"] = json!(true);
     // Where a fact is missed, whether or not the replay is as the reports tell it.
@@ -116,7 +115,26 @@ fn a_fact_that_the_reports_do_not_tell_ends_it() {
         let why = made.unwrap_err().to_string();
         assert!(why.starts_with(says), "{why}");
     }
-    assert!(restaged(&[&content], 3).0.is_ok(), "what misses nothing and is as told is taken");
+}
+
+#[test]
+fn an_answer_that_contradicts_itself_or_disputes_what_is_no_fact_goes_back() {
+    let (wrong, moon) = (json!(["CP acts: it stood"]), json!(["the moon is wrong"]));
+    let mut change = with("cp", -9.0);
+    change["wrong_facts"] = wrong.clone();
+    for (odd, told_then) in [
+        (json!({"as_told": true, "wrong_facts": wrong}), "as_told is true, wrong_facts is given"),
+        (json!({"as_told": true, "note": "but wrong", "without": ["cp"]}), "as_told is true, and without is given"),
+        (json!({"as_told": true, "note": "but wrong"}), "as_told is true, and note is not empty"),
+        (json!({"as_told": false, "wrong_facts": moon}), "names no told fact of the list"),
+        (change, "wrong_facts is given, and actors is given"),
+    ] {
+        let (made, told, staged) = restaged(&[&odd, &as_told()], 1);
+        assert!(told.contains(told_then), "{odd}: {told}");
+        assert!(staged.is_empty() && made.unwrap() == staging(draft()), "{odd}");
+        let (made, ..) = restaged(&[&odd, &odd], 1);
+        assert!(matches!(made, Err(AgentError::NoUsableAnswer { .. })), "{odd}: {made:?}");
+    }
 }
 
 #[test]

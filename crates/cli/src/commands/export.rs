@@ -20,8 +20,9 @@ What each file holds, and what each tool takes for a position, a heading and a t
 #[derive(Debug, Clone, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct ExportArgs {
-    /// Folder of a suite, whose scenarios are taken as tuned, or a scenario file (JSON).
-    #[arg(value_name = "SUITE|SCENARIO")]
+    /// Folder of a suite, whose scenarios are taken as tuned; folder of scenario files, as reconstruct writes them; or a scenario file
+    /// (JSON).
+    #[arg(value_name = "SUITE|FOLDER|SCENARIO")]
     pub source: PathBuf,
     /// Formats, separated by commas: openscenario (with OpenDRIVE), scenic, metadrive, commonroad, scenarionet.
     #[arg(long, value_name = "FORMATS", value_delimiter = ',', required = true)]
@@ -35,10 +36,13 @@ pub struct ExportArgs {
     /// Target folder; each format gets a folder in it. [default: exports, in the suite or beside the file]
     #[arg(long, value_name = "DIR")]
     pub to_dir: Option<PathBuf>,
-    /// Overwrite files that are there already.
+    /// Overwrite files that are there already and hold something else.
     #[arg(long)]
     pub force: bool,
-    /// Start the program that the suite names as its ego; the exports hold what it drives.
+    /// Python interpreter for an ego of MetaDrive's or in Python, where its runs are not in the suite.
+    #[arg(long, value_name = "FILE", env = "RECRASH_PYTHON", default_value = "python3")]
+    pub python: PathBuf,
+    /// Start the program that the suite names as its ego, where its runs are not in the suite; the exports hold what it drives.
     #[arg(long)]
     pub trust: bool,
 }
@@ -56,6 +60,7 @@ pub fn run(args: &ExportArgs, output: Output) -> Result<(), PipelineError> {
         partners_as,
         target: args.to_dir.clone(),
         force: args.force,
+        python: args.python.clone(),
         trust: args.trust,
     })?;
     if output.json {
@@ -69,9 +74,16 @@ pub fn run(args: &ExportArgs, output: Output) -> Result<(), PipelineError> {
     Err(PipelineError::BadInput { what: not_exported(&report), diagnostics: report.failures })
 }
 
-/// How many scenarios were not exported, and what became of the others.
+/// How many scenarios were not exported, or not in every format, and what became of the others.
 fn not_exported(report: &ExportReport) -> String {
-    let (lost, made) = (report.failures.len(), report.scenarios);
+    let mut failed: Vec<_> = report.failures.iter().map(|failure| &failure.location.file).collect();
+    failed.dedup();
+    let (lost, made, partial) = (failed.len() - report.partial, report.scenarios, report.partial);
+    if partial > 0 {
+        let scenarios = if partial == 1 { "1 scenario was" } else { &format!("{partial} scenarios were") };
+        let lost = if lost == 0 { String::new() } else { format!(", {lost} in none") };
+        return format!("{scenarios} not exported in every format{lost}; everything else was written");
+    }
     match (lost, made) {
         (1, 0) => "the scenario was not exported".to_owned(),
         (_, 0) => format!("none of {lost} scenarios was exported"),

@@ -39,7 +39,7 @@ enum Verdict {
 
 impl Verdict {
     fn of(case: &CaseSummary) -> Self {
-        match &case.tuned {
+        match case.last_run() {
             Some(run) if run.struck_standing() => Self::Struck,
             Some(run) if run.failed => Self::Fail,
             Some(_) if case.situation_met == Some(false) => Self::NotMet,
@@ -63,8 +63,8 @@ impl Verdict {
 
 /// The worst first: by verdict, in the situation of the record before others, by the larger change of velocity, by the gap.
 fn worst_first(cases: &[CaseSummary]) -> Vec<&CaseSummary> {
-    let harm = |case: &CaseSummary| case.tuned.as_ref().map_or(0.0, RunSummary::harm_mps);
-    let gap = |case: &CaseSummary| case.tuned.as_ref().and_then(|run| run.min_gap_m).unwrap_or(f64::MAX);
+    let harm = |case: &CaseSummary| case.last_run().map_or(0.0, RunSummary::harm_mps);
+    let gap = |case: &CaseSummary| case.last_run().and_then(|run| run.min_gap_m).unwrap_or(f64::MAX);
     let mut ranked: Vec<&CaseSummary> = cases.iter().collect();
     ranked.sort_by(|a, b| {
         let group = |case: &CaseSummary| (Verdict::of(case), case.situation_met != Some(true));
@@ -75,13 +75,13 @@ fn worst_first(cases: &[CaseSummary]) -> Vec<&CaseSummary> {
 
 /// What led to the failure, or its kind where no rule tells.
 fn what_failed(case: &CaseSummary) -> String {
-    let Some(run) = case.tuned.as_ref().filter(|run| run.failed) else { return "-".into() };
+    let Some(run) = case.last_run().filter(|run| run.failed) else { return "-".into() };
     run.cause.map_or_else(|| run.findings_in_words(), |cause| cause.label().to_owned())
 }
 
 /// In which run it fails first.
 fn found(case: &CaseSummary) -> &'static str {
-    match &case.tuned {
+    match case.last_run() {
         Some(run) if run.failed && case.found_by_tuning() => "by tuning",
         Some(run) if run.failed => "as is",
         _ => "-",
@@ -157,7 +157,8 @@ fn reviews(summary: &Summary) {
 fn remarks(summary: &Summary) {
     let told = |case: &CaseSummary| {
         if let Some(failure) = &case.failure {
-            return Some(format!("{} {}: {failure}", yellow("not run:"), case.id));
+            let what = if case.unanswered().is_some() { "not answered:" } else { "not run:" };
+            return Some(format!("{} {}: {failure}", yellow(what), case.id));
         }
         let why = case.recorded.as_ref().map_or_else(String::new, |run| run.unfaithful.join("; "));
         (case.faithful() == Some(Answer::No)).then(|| format!("{} {}: {why}", yellow("not as told:"), case.id))
@@ -197,7 +198,7 @@ fn worst(cases: &[CaseSummary], reviewed: bool) {
             Cell::new(&case.id),
             Cell::new(what_failed(case)),
             Cell::new(found(case)),
-            number(delta_v(case.tuned.as_ref())),
+            number(delta_v(case.last_run())),
             Cell::new(situation),
             Cell::new(case.crash_type.map_or("", CrashType::label)),
             Cell::new(as_told),
@@ -229,6 +230,7 @@ fn result(summary: &Summary) {
     let [first, last] = summary.tested();
     let parked = count(&|case| Verdict::of(case) == Verdict::Parked);
     let not_run = count(&|case| Verdict::of(case) == Verdict::NotRun);
+    let unanswered = count(&|case| case.unanswered().is_some());
     println!("\n{} {} fails, where it came into the situation of the record,", bold("result:"), summary.ego);
     sentence(&format!("  as reconstructed, from the handover on: {}", failures(&first)));
     // With a budget of one point nothing was searched.
@@ -240,16 +242,17 @@ fn result(summary: &Summary) {
             count(&CaseSummary::found_by_tuning)
         ));
     }
-    let outside = count(&|case| case.situation_met == Some(false) && case.tuned.as_ref().is_some_and(|run| run.failed));
+    let outside = count(&|case| case.situation_met == Some(false) && case.last_run().is_some_and(|run| run.failed));
     let also = |before: &str, count: usize, words: &str| {
         if count > 0 { format!("{before}{count} {words}") } else { String::new() }
     };
     sentence(&format!(
-        "  {} scenarios: {} driven, {} of them never in the situation{}{}{}",
+        "  {} scenarios: {} driven, {} of them never in the situation{}{}{}{}",
         summary.cases.len(),
         last.ran,
         last.ran - last.met,
         also(", where ", outside, "failed in another way"),
+        also("; ", unanswered, "driven as reconstructed, with no answer after that"),
         also("; ", parked, "parked, nothing to test"),
         also("; ", not_run, "not run"),
     ));
@@ -276,7 +279,9 @@ fn result(summary: &Summary) {
         let causes = causes.iter().map(|(cause, count)| (cause.label(), *count)).collect();
         let when = if searched { "after tuning, by cause" } else { "by cause" };
         sentence(&format!("{when}{of_all}: {}", listed(causes)));
-        let classes = summary.failure_classes().into_iter().map(|(class, count)| (class.label(), count)).collect();
+        let untold = count(&|case| case.triage.is_none() && case.last_run().is_some_and(|run| run.failed));
+        let classes = summary.failure_classes().into_iter().map(|(class, count)| (class.label(), count));
+        let classes = classes.chain((untold > 0).then_some(("not answered", untold))).collect();
         sentence(&format!("  other egos in the same scenario: {}", listed(classes)));
         let brackets = summary.brackets().into_iter().map(|(bracket, count)| (bracket.label(), count)).collect();
         sentence(&format!("  of contacts, {REGULATION_DRIVERS}: {}", listed(brackets)));

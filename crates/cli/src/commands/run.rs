@@ -11,7 +11,8 @@ use crate::table::{Cell, number, table};
 use recrash_model::metrics::{Answer, CheckKind};
 use recrash_model::narrative::Origin;
 use recrash_pipeline::{
-    CaseSummary, ModelSummary, PipelineError, RunSummary, Stage, Suite, Summary, check_choices, run_stage,
+    CaseSummary, ModelSummary, PipelineError, RunSummary, Stage, Suite, Summary, check_choices, must_be_ready,
+    run_stage,
 };
 use std::path::Path;
 
@@ -26,6 +27,7 @@ pub fn run(args: &SuiteArgs, output: Output) -> Result<(), PipelineError> {
     if output.tables() {
         heading(&suite);
     }
+    must_be_ready(&suite)?;
     let progress = output.progress();
     for stage in Stage::ALL {
         let report = run_stage(&suite, stage, &*progress)?;
@@ -174,7 +176,8 @@ fn scenarios(cases: &[CaseSummary]) {
 /// Why a scenario was not run, or what of it does not show what is told.
 fn doubts(case: &CaseSummary) {
     if let Some(failure) = &case.failure {
-        println!("  {} {}: {failure}", yellow("not run:"), case.id);
+        let what = if case.unanswered().is_some() { "not answered:" } else { "not run:" };
+        println!("  {} {}: {failure}", yellow(what), case.id);
         return;
     }
     let Some(run) = case.tuned.as_ref() else { return };

@@ -13,7 +13,7 @@ use recrash_model::preventability::Bracket;
 use recrash_model::results::{TestOutcome, TestResult, TestResults, TestVerdict};
 use recrash_pipeline::{
     CiFiles, Outputs, PageRequest, PipelineError, SimulatorKind, TestRequest, by_cause, compare_files, compare_with,
-    comparison_sentence, github_annotations, hold_to, must_tell, read_results, test, write_page,
+    comparison_sentence, default_python, github_annotations, hold_to, must_tell, read_results, test, write_page,
 };
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -127,7 +127,7 @@ impl CompareArgs {
             frozen: suite.to_owned(),
             ego: None,
             simulator: SimulatorKind::Native,
-            python: PathBuf::new(),
+            python: default_python(),
             patience: patience(self.ego_timeout),
             seeds: 1,
             threads: None,

@@ -1,6 +1,6 @@
 //! Egos on the command line: the reference driver, and programs of the user's, good and bad.
 
-use crate::common::recrash;
+use crate::common::{Place, SMALL, recrash};
 use std::path::{Path, PathBuf};
 
 fn repository() -> PathBuf {
@@ -135,4 +135,105 @@ fn a_program_sees_what_the_user_names_and_no_key() {
     let sees = |name: &str| seen.lines().any(|line| line == name);
     assert!(sees("PATH") && sees("STACK_MODE") && sees("NAMED_TOKEN"), "{seen}");
     assert!(!sees("STACK_API_KEY") && !sees("OPENAI_API_KEY") && !sees("UNNAMED"), "{seen}");
+}
+
+/// An ego that gives up in the second run of the first scenario that it sees, until it may go on.
+const FAINT: &str = r#"
+import json, pathlib, sys
+seen, well = pathlib.Path("seen"), pathlib.Path("well")
+for line in sys.stdin:
+    message = json.loads(line)
+    if message["type"] == "reset":
+        runs = seen.read_text().split() if seen.exists() else []
+        seen.write_text(" ".join(runs + [message["scenario"]]))
+        if runs and runs[0] == message["scenario"] and not well.exists():
+            sys.exit("out of memory")
+    if message["type"] == "step":
+        answer = {"type": "control", "throttle": 0.3 if message["ego"]["speed"] < 6.0 else 0.0, "steer": 0.0}
+    else:
+        answer = {"type": "ready", "protocol": "recrash.ego/1"}
+    if message["type"] != "end":
+        print(json.dumps(answer), flush=True)
+"#;
+
+#[test]
+fn who_was_driven_and_gives_no_answer_in_triage_stays_driven() {
+    let place = Place::new();
+    std::fs::write(place.path("ego.py"), FAINT).expect("a script");
+    let arguments =
+        ["run", "--profile", "open", "--records", crate::common::FEW, "--budget", "4", "--tune-budget", "1"];
+    let arguments = [&arguments[..], &["--threads", "1", "--ego", "cmd:python3 ego.py"]].concat();
+    let (code, shown, errors) = place.run(&arguments);
+    assert_eq!(code, 0, "{errors}");
+    let summary = || -> serde_json::Value {
+        serde_json::from_str(&std::fs::read_to_string(place.path("suite/summary.json")).expect("a summary"))
+            .expect("JSON")
+    };
+    let cases = summary()["cases"].as_array().expect("cases").clone();
+    let fainted: Vec<_> = cases.iter().filter(|case| !case["failure"].is_null()).collect();
+    assert!(fainted.len() == 1 && fainted[0]["failure"]["stage"] == "triage", "{cases:?}");
+    assert!(fainted[0]["first"].is_object() && fainted[0]["situation_met"].is_boolean(), "{}", fainted[0]);
+    let tested = cases.iter().filter(|case| case["first"].is_object()).count();
+    for words in [
+        format!("{} scenarios: {tested} driven", cases.len()),
+        "1 driven as reconstructed, with no answer after that".to_owned(),
+        format!("not answered: {}: triage: ", fainted[0]["id"].as_str().expect("an id")),
+    ] {
+        assert!(shown.contains(&words), "{words}: {shown}");
+    }
+    assert!(!shown.contains("not run") && !shown.contains("NOT RUN"), "{shown}");
+    // It is asked again by the next run.
+    std::fs::write(place.path("well"), "").expect("a file");
+    let (code, shown, errors) = place.run(&arguments);
+    assert!(code == 0 && !shown.contains("no answer after that"), "{errors} {shown}");
+}
+
+/// A folder with the module of the package that speaks for egos in Python, and an ego `my_stack` beside it.
+pub(super) fn python_place(speed_mps: f64) -> Place {
+    let place = Place::new();
+    std::fs::create_dir(place.path("recrash")).expect("a folder");
+    std::fs::write(place.path("recrash/__init__.py"), "").expect("a module");
+    std::fs::copy(repository().join("python/recrash/ego.py"), place.path("recrash/ego.py")).expect("a module");
+    std::fs::create_dir(place.path("my_stack")).expect("a folder");
+    std::fs::write(place.path("my_stack/__init__.py"), "from my_stack.planner import drive\n").expect("a module");
+    planner(&place, speed_mps);
+    place
+}
+
+fn planner(place: &Place, speed_mps: f64) {
+    let text = format!(
+        "def drive(seen):\n    slow = seen['ego']['speed'] < {speed_mps:?}\n    return {{'throttle': 0.3 if slow else -0.2, 'steer': 0.0}}\n"
+    );
+    std::fs::write(place.path("my_stack/planner.py"), text).expect("a module");
+}
+
+#[test]
+fn runs_of_an_ego_that_is_a_module_are_made_again_where_its_package_has_changed() {
+    let place = python_place(6.0);
+    let arguments = [&SMALL[..], &["--ego", "py:my_stack:drive"]].concat();
+    let done = |shown: &str| shown.contains("simulate: 0 units done, 2 there already");
+    let (code, _, errors) = place.run(&arguments);
+    assert_eq!(code, 0, "{errors}");
+    let (_, shown, errors) = place.run(&["simulate", "suite"]);
+    assert!(errors.contains("--trust"), "{shown} {errors}");
+    let simulate = || place.run(&["simulate", "suite", "--ego", "py:my_stack:drive"]).1;
+    assert!(done(&simulate()));
+    planner(&place, 3.0);
+    assert!(!done(&simulate()), "a changed file of its package");
+    assert!(done(&simulate()));
+}
+
+#[test]
+#[cfg(unix)]
+fn the_interpreter_that_is_named_runs_an_ego_that_is_a_module() {
+    use std::os::unix::fs::PermissionsExt;
+    let place = python_place(6.0);
+    let python = place.path("my-python");
+    std::fs::write(&python, "#!/bin/sh\ntouch used\nexec python3 \"$@\"\n").expect("a script");
+    std::fs::set_permissions(&python, std::fs::Permissions::from_mode(0o755)).expect("its owner's");
+    let ego = ["simulate", &crossing(), "--ego", "py:my_stack:drive"];
+    let (code, _, errors) = place.run(&[&ego[..], &["--python", "./my-python"]].concat());
+    assert!(code == 0 && place.path("used").exists(), "{errors}");
+    let (code, _, errors) = place.run(&[&ego[..], &["--python", "no-such-python"]].concat());
+    assert!(code == 3 && errors.contains("no-such-python"), "{errors}");
 }

@@ -154,23 +154,77 @@ fn an_unknown_format_and_a_folder_that_is_no_suite_are_refused() {
     let (code, shown) = case.run(&["export", "empty", "--to", "scenic"]);
     assert_eq!(code, BAD_INPUT);
     assert!(shown.contains("empty") && shown.contains("suite.json"), "{shown}");
+    // Settings of somebody's are no scenario.
+    std::fs::write(case.path("empty/settings.json"), "{}").unwrap();
+    assert_eq!(case.run(&["export", "empty", "--to", "scenic"]).0, BAD_INPUT);
 }
 
 #[test]
-fn a_target_with_files_in_it_is_left_alone() {
+fn a_file_with_other_content_is_left_alone_and_files_of_other_names_are_no_hindrance() {
     let case = Case { place: Place::new() };
     std::fs::write(case.path("dialect.json"), DIALECT).unwrap();
     std::fs::create_dir_all(case.path("exports/scenic")).unwrap();
-    std::fs::write(case.path("exports/scenic/mine.txt"), "mine").unwrap();
+    std::fs::write(case.path("exports/scenic/dialect.scenic"), "mine").unwrap();
     let export = ["export", "dialect.json", "--to", "commonroad,scenic"];
     let (code, shown) = case.run(&export);
     assert_eq!(code, BAD_INPUT);
     assert!(shown.contains("scenic") && shown.contains("--force") && shown.contains("--to-dir"), "{shown}");
-    assert_eq!(names_in(&case.path("exports/scenic")), BTreeSet::from(["mine.txt".to_owned()]));
+    assert_eq!(std::fs::read_to_string(case.path("exports/scenic/dialect.scenic")).unwrap(), "mine");
     assert!(!case.path("exports/commonroad").exists(), "nothing is written before the question is settled");
     let (code, shown) = case.run(&[&export[..], &["--force"]].concat());
     assert_eq!(code, 0, "{shown}");
-    assert!(case.path("exports/scenic/mine.txt").exists() && case.path("exports/scenic/dialect.scenic").exists());
+    assert_ne!(std::fs::read_to_string(case.path("exports/scenic/dialect.scenic")).unwrap(), "mine");
+    // A second scenario goes into the same folder.
+    std::fs::write(case.path("second.json"), DIALECT.replace("\"dialect\"", "\"second\"")).unwrap();
+    for _ in 0..2 {
+        let (code, shown) = case.run(&["export", "second.json", "--to", "commonroad,scenic"]);
+        assert_eq!(code, 0, "{shown}");
+    }
+    assert!(case.path("exports/scenic/dialect.scenic").exists() && case.path("exports/scenic/second.scenic").exists());
+}
+
+#[test]
+fn a_format_that_cannot_hold_a_scenario_withholds_no_other() {
+    let case = Case { place: Place::new() };
+    let (code, shown) = case.run(&["reconstruct", FEW, "--to-dir", "scenes"]);
+    assert_eq!(code, 0, "{shown}");
+    let scenarios = names_in(&case.path("scenes"));
+    // A folder of scenario files is exported as it is.
+    let (code, shown) = case.run(&["export", "scenes", "--to", "openscenario,metadrive", "--to-dir", "out"]);
+    assert_eq!(code, BAD_INPUT, "{shown}");
+    assert!(
+        shown.contains("not exported to metadrive: ") && !shown.contains("not exported to openscenario"),
+        "{shown}"
+    );
+    assert!(shown.contains(" not exported in every format; everything else was written"), "{shown}");
+    let written = names_in(&case.path("out/openscenario"));
+    for name in &scenarios {
+        assert!(written.contains(&name.replace(".json", ".xosc")), "{name}: {written:?}");
+    }
+    let report = case.json(&["export", "scenes", "--to", "openscenario,metadrive", "--to-dir", "out"]);
+    assert_eq!(report["scenarios"].as_u64(), Some(scenarios.len() as u64), "{report}");
+    assert_eq!(report["partial"].as_u64(), report["failures"].as_array().map(|all| all.len() as u64), "{report}");
+}
+
+/// An ego whose runs are in the suite is not started again for an export.
+#[test]
+fn an_export_takes_the_runs_of_the_suite() {
+    let case = Case { place: Place::new() };
+    let count = "import pathlib, sys\npathlib.Path('started').open('a').write('x')\n";
+    std::fs::write(case.path("ego.py"), count.to_owned() + &crate::common::driving_ego(6.0)).unwrap();
+    let started = || std::fs::read_to_string(case.path("started")).map_or(0, |text| text.len());
+    let run = ["run", "--quiet", "--records", FEW, "--budget", "2", "--tune-budget", "1", "--threads", "1"];
+    let (code, shown) = case.run(&[&run[..], &["--ego", "cmd:python3 ego.py"]].concat());
+    assert_eq!((code, started()), (0, 1), "one process for all stages: {shown}");
+    let (code, shown) = case.run(&["export", "suite", "--to", "openscenario", "--as", "trajectory"]);
+    assert_eq!((code, started()), (0, 1), "{shown}");
+    // A changed ego is another one: it drives again, once for all scenarios, where it is trusted.
+    std::fs::write(case.path("ego.py"), count.to_owned() + &crate::common::driving_ego(5.0)).unwrap();
+    let export = ["export", "suite", "--to", "openscenario", "--as", "trajectory", "--to-dir", "other"];
+    let (code, shown) = case.run(&export);
+    assert!(code != 0 && shown.contains("--trust") && started() == 1, "{shown}");
+    let (code, shown) = case.run(&[&export[..], &["--trust"]].concat());
+    assert_eq!((code, started()), (0, 2), "{shown}");
 }
 
 #[test]
@@ -192,7 +246,10 @@ fn an_interrupted_export_goes_on() {
     std::fs::write(&edited, "mine").unwrap();
     let (code, shown) = case.run(&export);
     assert_eq!(code, BAD_INPUT, "{shown}");
-    assert!(shown.contains("scenic holds other files") && shown.contains("--force"), "{shown}");
+    assert!(
+        shown.contains("scenic is there already, and holds something else") && shown.contains("--force"),
+        "{shown}"
+    );
     assert_eq!(std::fs::read_to_string(&edited).unwrap(), "mine");
 }
 

@@ -171,3 +171,27 @@ fn a_program_that_the_suite_names_starts_when_the_caller_trusts_it() {
     let (_, _, error) = place.run(&["simulate", "--quiet", "--trust"]);
     assert!(ran.exists(), "{error}");
 }
+
+#[test]
+fn a_model_that_the_suite_names_is_asked_when_the_caller_names_it_and_not_when_another_is_named() {
+    let place = Place::made(&SMALL);
+    json(place.path("suite").join("suite.json"), |saved| saved["options"]["cast"]["design"] = "gpt-5-pro".into());
+    let nowhere = ["design", "--quiet", "--retries", "0", "--base-url", "http://127.0.0.1:9"];
+    let run = |named: &[&str]| place.run(&[&nowhere[..], named].concat());
+    for named in [
+        &[][..],
+        &["--tune", "rules"],
+        &["--paraphrase", "rules"],
+        &["--review", "nobody"],
+        &["--paraphrase", "other", "--tune", "gpt-5"],
+        &["--ego", "idm"],
+    ] {
+        let (code, _, error) = run(named);
+        assert!(code != 0 && error.contains("wants to ask the language model gpt-5-pro"), "{named:?}: {code} {error}");
+    }
+    // Nobody is at that address.
+    for allowed in [&["--design", "gpt-5-pro"][..], &["--trust"]] {
+        let (code, _, error) = run(allowed);
+        assert!(code == 3 && error.contains("gpt-5-pro did not answer"), "{allowed:?}: {code} {error}");
+    }
+}

@@ -120,6 +120,19 @@ fn the_command_that_runs_a_scenario_again_finds_an_ego_by_its_relative_path() {
     assert_eq!(hashes_of_reruns(&place, &results), hashes(&results));
 }
 
+#[test]
+#[cfg(unix)]
+fn nor_does_it_lose_an_ego_that_is_a_module_or_a_file_of_pythons() {
+    let place = crate::egos::python_place(6.0);
+    std::fs::write(place.path("mine.py"), "from my_stack import drive\n").unwrap();
+    for ego in ["py:my_stack:drive", "py:mine:drive", "py:mine.py:drive"] {
+        let (code, _, error) = place.run(&["run", "--quiet", "--budget", "1", "--tune-budget", "1", "--ego", ego]);
+        assert_eq!(code, 0, "{error}");
+        let results = std::fs::read_to_string(place.path("suite/results.csv")).unwrap();
+        assert_eq!(hashes_of_reruns(&place, &results), hashes(&results), "{ego}");
+    }
+}
+
 /// Work that misses what is asked for.
 const MISSED: i32 = 5;
 

@@ -92,20 +92,28 @@ impl Models {
     /// # Errors
     /// The ledger cannot be read or written, or the models cannot be asked like this.
     ///
-    /// Without `may_ask` what the ledger lacks is asked of nobody: the models are named by a file, which may be anybody's.
+    /// Only the models of which `may_ask` is true are asked over the network. The others are named by a file alone, which may
+    /// be anybody's: for them the ledger answers, or nobody.
     pub fn open(
         store: &Store,
         cast: &Cast,
         access: &ModelAccess,
-        may_ask: bool,
+        may_ask: impl Fn(&str) -> bool,
     ) -> Result<(Self, Vec<Diagnostic>), PipelineError> {
         let ledger: Arc<dyn Ledger> = Arc::new(FileLedger(store.clone()));
         let spending = Arc::new(Spending::default());
         let mut diagnostics = Vec::new();
         let (answers, batch): (Arc<dyn Answers>, _) = match access.mode {
             AnswerMode::Replay => (Arc::new(Replay { ledger }), None),
-            AnswerMode::Live if !may_ask => (Arc::new(Unasked { ledger }), None),
-            AnswerMode::Live => (live(ledger, cast, access, &spending)?, None),
+            AnswerMode::Live => {
+                let all: Vec<String> = cast.models().into_iter().map(str::to_owned).collect();
+                let named: Vec<String> = all.iter().filter(|model| may_ask(model)).cloned().collect();
+                let asked = match named.is_empty() {
+                    true => None,
+                    false => Some(live(Arc::clone(&ledger), &named, access, &spending)?),
+                };
+                (Arc::new(NamedOnly { ledger, cast: all, named, asked }), None)
+            }
             AnswerMode::Batch => {
                 let taken_in = responses::take_in(store, &price_table(access)?, &secrets::scrubber())?;
                 let TakenIn { tried, diagnostics: told } = taken_in;
@@ -121,6 +129,19 @@ impl Models {
     /// A model in its roles. `repairs` counts the answers that went back.
     pub fn model<'a>(&'a self, name: &'a str, cast: &Cast, repairs: &'a Repairs) -> LanguageModel<'a> {
         LanguageModel { model: name, answers: &*self.answers, max_repairs: cast.repairs, repairs }
+    }
+
+    /// Whether the models can be asked, as far as that is seen without asking one. Where the ledger holds answers it may hold all that are
+    /// wanted: then this is seen when one is wanted that it does not hold.
+    ///
+    /// # Errors
+    /// The suite names a model that the caller does not, or a key is missing.
+    pub fn ready(&self) -> Result<(), PipelineError> {
+        let answered = std::fs::read_dir(self.store.path("ledger")).is_ok_and(|mut entries| entries.next().is_some());
+        if answered {
+            return Ok(());
+        }
+        self.answers.ready().map_err(|error| PipelineError::ModelRefused(error.to_string()))
     }
 
     /// About what so many questions of so many bytes together cost, in words.
@@ -167,39 +188,57 @@ impl Models {
     }
 }
 
-/// Answers from the ledger, where nobody allowed to ask the models.
-struct Unasked {
+/// Asks the models that the caller allows; for others the ledger answers.
+struct NamedOnly {
     ledger: Arc<dyn Ledger>,
+    /// All models of the suite.
+    cast: Vec<String>,
+    /// Those that may be asked.
+    named: Vec<String>,
+    asked: Option<Arc<dyn Answers>>,
 }
 
-impl Answers for Unasked {
+impl Answers for NamedOnly {
     fn answer(&self, question: &Question) -> Result<Exchange, AskError> {
-        self.ledger.find(&question.hash()).map_err(AskError::Ledger)?.ok_or_else(|| {
-            AskError::Refused(format!(
-                "the suite wants to ask the language model {}; a suite may be anybody's, so name the model in the command, or \
-                 say that the suite is trusted",
-                question.model
-            ))
-        })
+        if let Some(asked) = self.asked.as_ref().filter(|_| self.named.contains(&question.model)) {
+            return asked.answer(question);
+        }
+        self.ledger.find(&question.hash()).map_err(AskError::Ledger)?.ok_or_else(|| unnamed(&question.model))
     }
+
+    fn ready(&self) -> Result<(), AskError> {
+        match self.cast.iter().find(|model| !self.named.contains(model)) {
+            Some(model) => Err(unnamed(model)),
+            None => self.asked.as_ref().map_or(Ok(()), |asked| asked.ready()),
+        }
+    }
+}
+
+/// Refuses to ask a model that a file alone names.
+fn unnamed(model: &str) -> AskError {
+    AskError::Refused(format!(
+        "the suite wants to ask the language model {model}; a suite may be anybody's, so name the model in the command, or say that \
+         the suite is trusted"
+    ))
 }
 
 #[cfg(feature = "live")]
 fn live(
     ledger: Arc<dyn Ledger>,
-    cast: &Cast,
+    named: &[String],
     access: &ModelAccess,
     spending: &Arc<Spending>,
 ) -> Result<Arc<dyn Answers>, PipelineError> {
     let options = live_options(access)?;
-    options.check(&cast.models()).map_err(PipelineError::Usage)?;
-    Ok(Arc::new(Live::new(ledger, options, Arc::clone(spending), &cast.models())))
+    let named: Vec<&str> = named.iter().map(String::as_str).collect();
+    options.check(&named).map_err(PipelineError::Usage)?;
+    Ok(Arc::new(Live::new(ledger, options, Arc::clone(spending), &named)))
 }
 
 #[cfg(not(feature = "live"))]
 fn live(
     _ledger: Arc<dyn Ledger>,
-    _cast: &Cast,
+    _named: &[String],
     _access: &ModelAccess,
     _spending: &Arc<Spending>,
 ) -> Result<Arc<dyn Answers>, PipelineError> {

@@ -52,8 +52,8 @@ impl std::str::FromStr for SimulatorKind {
     }
 }
 
-/// Sets up a simulator with an ego in it, both chosen by name. Python workers are started for MetaDrive alone, other programs for
-/// an ego `cmd:PROGRAM`.
+/// Sets up a simulator with an ego in it, both chosen by name. Python workers are started for MetaDrive and an ego
+/// `py:MODULE:NAME`, other programs for an ego `cmd:PROGRAM`.
 ///
 /// # Errors
 /// There is no such ego, its program does not speak the protocol, or Python or MetaDrive is missing.
@@ -66,7 +66,7 @@ pub fn start_simulator(
 ) -> Result<Box<dyn Simulator>, PipelineError> {
     if let Some(command) = EgoCommand::parse(ego).map_err(PipelineError::bad_input)? {
         return match kind {
-            SimulatorKind::Native => Ok(Box::new(ExternalEgo::start(command, patience)?)),
+            SimulatorKind::Native => Ok(Box::new(ExternalEgo::start(command.interpreted_by(python), patience)?)),
             SimulatorKind::Metadrive => Err(metadrive_only_runs_its_own(ego)),
         };
     }
@@ -81,9 +81,14 @@ pub fn start_simulator(
     }
 }
 
+/// Whether an ego is one of MetaDrive's that the native simulator does not have.
+pub(crate) fn drives_on_metadrive_alone(ego: &str) -> bool {
+    metadrive_egos().contains(&ego) && ego != Ego::MetadriveIdm.name()
+}
+
 /// An ego of the native simulator.
 fn native_ego(ego: &str) -> Result<Ego, PipelineError> {
-    if metadrive_egos().contains(&ego) && ego != Ego::MetadriveIdm.name() {
+    if drives_on_metadrive_alone(ego) {
         let text = format!("{ego} drives on MetaDrive alone: choose the simulator metadrive for it");
         return Err(PipelineError::bad_input(text));
     }
@@ -102,8 +107,9 @@ fn metadrive_policy(ego: &str) -> Result<Drive, PipelineError> {
 ///
 /// # Errors
 /// It cannot, or is not.
-pub(crate) fn check_simulator(kind: SimulatorKind, ego: &str) -> Result<(), PipelineError> {
-    match EgoCommand::parse(ego).map_err(PipelineError::bad_input)? {
+pub(crate) fn check_simulator(kind: SimulatorKind, ego: &str, python: &Path) -> Result<(), PipelineError> {
+    let command = EgoCommand::parse(ego).map_err(PipelineError::bad_input)?;
+    match command.map(|command| command.interpreted_by(python)) {
         Some(_) if kind == SimulatorKind::Metadrive => Err(metadrive_only_runs_its_own(ego)),
         Some(command) if !command.is_there() => Err(PipelineError::bad_input(format!(
             "the ego {command}: there is no such program; check its name and path"

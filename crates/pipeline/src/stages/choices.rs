@@ -1,9 +1,10 @@
 //! What was chosen for a suite: whether it can be done, told before the work begins.
 
 use crate::error::PipelineError;
+use crate::models::Models;
 use crate::models::cast::RULES;
 use crate::simulators::check_simulator;
-use crate::suite::Suite;
+use crate::suite::{Stage, Suite, names};
 use recrash_model::profile::Tells;
 use recrash_search::Searcher;
 
@@ -30,5 +31,16 @@ pub fn check_choices(suite: &Suite) -> Result<(), PipelineError> {
             suite.profile().name
         )));
     }
-    check_simulator(suite.options().simulator, suite.ego())
+    check_simulator(suite.options().simulator, suite.ego(), suite.python())
+}
+
+/// Starts the ego and sees whether the models can be asked, before any work is done: a run may take long to come to either.
+///
+/// # Errors
+/// The ego or a model is one that only the suite names, the ego does not start, or a key is missing.
+pub fn must_be_ready(suite: &Suite) -> Result<(), PipelineError> {
+    suite.simulator()?;
+    // What was begun may need no further answer.
+    let is_begun = suite.output_hash(Stage::Records, Stage::Records.name(), names::RECORDS).is_ok();
+    suite.models().filter(|_| !is_begun).map_or(Ok(()), Models::ready)
 }

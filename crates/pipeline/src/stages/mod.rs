@@ -30,7 +30,7 @@ mod tune;
 mod view;
 
 pub(crate) use cases::Cases;
-pub use choices::check_choices;
+pub use choices::{check_choices, must_be_ready};
 pub use design_log::{DesignAttempt, DesignLog};
 pub use failures::{Failure, unfaithful};
 pub(crate) use restage::question as restage_question;
@@ -43,13 +43,14 @@ use crate::error::PipelineError;
 use crate::models::cast::RULES;
 use crate::progress::{Progress, ProgressEvent};
 use crate::simulators::Simulator;
-use crate::simulators::external;
+use crate::simulators::external::FILES_UNKNOWN;
 use crate::suite::{Course, Files, Stage, Suite, Work};
 use rayon::prelude::*;
 use recrash_agents::llm::prompts_version;
 use recrash_model::profile::Tells;
 use recrash_model::selection::Cluster;
 use recrash_model::{Diagnostic, Location, Severity};
+use std::sync::Arc;
 
 /// The stages that work case by case, in order: of a suite that goes by templates, or by accounts. The last of those is there where a
 /// model is cast for it.
@@ -88,7 +89,7 @@ pub(crate) struct Bench<'a> {
     pub suite: &'a Suite,
     /// Its cases.
     pub cases: &'a Cases,
-    simulator: Option<Box<dyn Simulator>>,
+    simulator: Option<Arc<dyn Simulator>>,
 }
 
 impl Bench<'_> {
@@ -230,7 +231,20 @@ fn per_case(work: &StageWork, declared: &CaseStage, cases: &Cases) -> Result<Sta
         failures::at(suite, id, declared.stage).map(|failure| failures::remark(id, &failure))
     };
     report.diagnostics.extend(clusters.iter().filter_map(failed));
+    if declared.stage == Stage::Simulate && suite.ego_identity()?.iter().any(|input| input == FILES_UNKNOWN) {
+        report.diagnostics.push(unknown_files(suite.ego()));
+    }
     Ok(report)
+}
+
+/// Why every run of this ego is made again.
+fn unknown_files(ego: &str) -> Diagnostic {
+    let message = format!(
+        "{ego}: its module is neither in the current folder nor in one of PYTHONPATH, so nobody can tell whether it has changed: all of \
+         its runs are made again each time"
+    );
+    Diagnostic::new(Severity::Note, "suite.ego-files", Location::default(), message)
+        .with_hint("run the command in the module's folder, or put that folder into PYTHONPATH")
 }
 
 /// Name of a unit of a stage that works case by case.
@@ -257,7 +271,7 @@ pub(crate) fn case_inputs(
     inputs.push(cases::text_of(suite.profile()));
     if declared.runs_ego {
         inputs.push(suite.options().simulator.name().to_owned());
-        inputs.push(external::identity(suite.ego())?);
+        inputs.extend_from_slice(suite.ego_identity()?);
     }
     inputs.extend((declared.decides)(suite)?);
     Ok(inputs)

@@ -320,14 +320,14 @@ impl Summary {
     }
 
     fn last_failures(&self) -> impl Iterator<Item = &RunSummary> {
-        self.cases.iter().filter_map(|case| case.tuned.as_ref()).filter(|run| run.failed)
+        self.cases.iter().filter_map(CaseSummary::last_run).filter(|run| run.failed)
     }
 
-    /// In a suite that goes by accounts: the system under test in the crashes as reconstructed, and after tuning. Its runs are
-    /// held against one thing alone, whether it came into the situation of the record.
+    /// In a suite that goes by accounts: the system under test in the crashes as reconstructed, and in its last runs there, after
+    /// tuning where it answered. Its runs are held against one thing alone, whether it came into the situation of the record.
     pub fn tested(&self) -> [TestedRuns; 2] {
-        let of = |run: fn(&CaseSummary) -> &Option<RunSummary>| {
-            let runs: Vec<&RunSummary> = self.cases.iter().filter_map(|case| run(case).as_ref()).collect();
+        let of = |run: fn(&CaseSummary) -> Option<&RunSummary>| {
+            let runs: Vec<&RunSummary> = self.cases.iter().filter_map(run).collect();
             let met: Vec<&RunSummary> = runs.iter().copied().filter(|run| run.met == Some(true)).collect();
             TestedRuns {
                 ran: runs.len(),
@@ -336,7 +336,7 @@ impl Summary {
                 beyond_tyres: met.iter().filter(|run| !run.failed && run.brakes_beyond_tyres()).count(),
             }
         };
-        [of(|case| &case.first), of(|case| &case.tuned)]
+        [of(|case| case.first.as_ref()), of(CaseSummary::last_run)]
     }
 
     /// Scenarios the ego fails, as designed and as tuned.
@@ -349,6 +349,16 @@ impl Summary {
 }
 
 impl CaseSummary {
+    /// The last run of the system under test: in the tuned scenario, or as designed where it gave no answer after that.
+    pub fn last_run(&self) -> Option<&RunSummary> {
+        self.tuned.as_ref().or(self.first.as_ref())
+    }
+
+    /// Why the system under test gave no answer any more in a scenario that it has driven.
+    pub fn unanswered(&self) -> Option<&Failure> {
+        self.failure.as_ref().filter(|_| self.last_run().is_some())
+    }
+
     /// Whether the system under test fails after tuning alone.
     pub fn found_by_tuning(&self) -> bool {
         let fails = |run: &Option<RunSummary>| run.as_ref().is_some_and(|run| run.failed);
@@ -389,7 +399,12 @@ impl CaseSummary {
             review: case.review.as_ref().and_then(|reviewed| reviewed.review.clone()),
             changed: case.design.as_ref().and_then(DesignLog::change),
             signs: case.recorded.as_ref().is_some_and(|ran| !ran.scenario.draft().control.is_empty()),
-            situation_met: case.tuned.as_ref().and_then(|tuned| tuned.ran.run.situation_met()),
+            situation_met: case
+                .tuned
+                .as_ref()
+                .map(|tuned| &tuned.ran)
+                .or(case.first.as_ref())
+                .and_then(|ran| ran.run.situation_met()),
             first: case.first.as_ref().map(|ran| RunSummary::new(&ran.run)),
             tuned: case.tuned.as_ref().map(|tuned| RunSummary::new(&tuned.ran.run)),
             triage: case.triage.clone(),
@@ -431,7 +446,7 @@ fn corpus(accounts: &AccountSet, cases: &[CaseSummary]) -> CorpusCoverage {
         .iter()
         .filter(|case| told(case))
         .filter_map(|case| {
-            let failed = case.tuned.as_ref().is_some_and(|run| run.failed);
+            let failed = case.last_run().is_some_and(|run| run.failed);
             Some((case.told.as_ref()?, Tested { met: case.situation_met == Some(true), failed, signs: case.signs }))
         })
         .collect();

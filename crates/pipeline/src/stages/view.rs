@@ -181,7 +181,10 @@ fn run_view(suite: &Suite, Ran { scenario, run }: &Ran, file: &str) -> RunView {
 /// The command that gives the run again, from the suite's folder.
 pub(super) fn rerun_command(suite: &Suite, file: &str, driver: &str) -> String {
     let (options, default) = (suite.options(), Options::default());
-    let mut command = format!("recrash simulate {file}");
+    // The recorded driver is no system under test: no suite names it.
+    let ego = if driver == Ego::Recorded.name() { driver } else { suite.ego() };
+    let python_path = named::python_path_from_folder(suite.store().dir(), ego);
+    let mut command = python_path.map_or_else(String::new, |path| path + " ") + &format!("recrash simulate {file}");
     if options.profile != default.profile {
         let profile = named::profile_from_folder(suite.store().dir(), &options.profile);
         command += &format!(" --profile {}", quoted(&profile));
@@ -189,7 +192,5 @@ pub(super) fn rerun_command(suite: &Suite, file: &str, driver: &str) -> String {
     if options.simulator != default.simulator {
         command += &format!(" --sim {}", options.simulator.name());
     }
-    // The recorded driver is no system under test: no suite names it.
-    let ego = if driver == Ego::Recorded.name() { driver } else { suite.ego() };
     command + &format!(" --ego {}", quoted(&named::ego_from_folder(suite.store().dir(), ego)))
 }

@@ -8,7 +8,7 @@ pub(crate) mod names;
 
 use crate::error::PipelineError;
 use crate::models::cast::RULES;
-use crate::simulators::external::{EgoCommand, Patience};
+use crate::simulators::external::{self, EgoCommand, FILES_UNKNOWN, Patience, default_python};
 
 use crate::files::json::to_json;
 use crate::files::store::{Store, WriteFile, sha256, write_suite_file};
@@ -26,7 +26,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fs::{File, TryLockError};
 use std::path::{Path, PathBuf};
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
 /// The suite files' format tag.
 const SUITE_FORMAT: &str = "recrash.suite/2";
@@ -121,7 +121,7 @@ pub(crate) struct Work<'a> {
 }
 
 /// What the caller allows a run to do with a suite that is there already.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Permissions {
     /// Makes a suite of other records or of another profile in its place.
     pub replace: bool,
@@ -131,8 +131,32 @@ pub struct Permissions {
     pub reselect: bool,
     /// Starts programs that the suite names; without it only those that the caller names.
     pub trust: bool,
-    /// Asks the language models of its options; without it only the ledger answers for them.
-    pub ask_models: bool,
+    /// Language models of the suite that are asked; for the others only the ledger answers.
+    pub models: MayAsk,
+}
+
+/// Which language models a run may ask, at the caller's cost.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum MayAsk {
+    /// Those that the caller names, whatever else the suite names.
+    Named(Vec<String>),
+    /// All that the suite names.
+    All,
+}
+
+impl Default for MayAsk {
+    fn default() -> Self {
+        Self::Named(Vec::new())
+    }
+}
+
+impl MayAsk {
+    fn allows(&self, model: &str) -> bool {
+        match self {
+            Self::All => true,
+            Self::Named(names) => names.iter().any(|name| name == model),
+        }
+    }
 }
 
 /// What a run may use of the machine, and what it may do. No byte of the results depends on it.
@@ -154,7 +178,7 @@ impl Default for Resources {
     fn default() -> Self {
         Self {
             threads: None,
-            python: "python3".into(),
+            python: default_python(),
             patience: Patience::default(),
             models: ModelAccess::default(),
             permissions: Permissions::default(),
@@ -177,6 +201,10 @@ pub struct Suite {
     models: Option<Models>,
     remarks: Vec<Diagnostic>,
     stagings: Stagings,
+    /// The simulator, once it was started.
+    simulator: OnceLock<Arc<dyn Simulator>>,
+    /// What the ego is, once it was looked at.
+    ego_identity: OnceLock<Vec<String>>,
     /// Whether the options stand in the suite's file.
     saved: Mutex<bool>,
     /// Keeps others from working in the folder at the same time.
@@ -281,7 +309,7 @@ impl Suite {
         let profile = options.system_profile()?;
         let threads = thread_pool(resources.threads.unwrap_or(0))?;
         let has_model = !options.cast.models().is_empty();
-        let may_ask = resources.permissions.ask_models;
+        let may_ask = |model: &str| resources.permissions.models.allows(model);
         let opened = has_model.then(|| Models::open(&store, &options.cast, &resources.models, may_ask)).transpose()?;
         let (models, remarks) = opened.map_or((None, Vec::new()), |(models, remarks)| (Some(models), remarks));
         let asks = has_model && resources.models.mode == AnswerMode::Live;
@@ -302,6 +330,8 @@ impl Suite {
             models,
             remarks,
             stagings: Stagings::default(),
+            simulator: OnceLock::new(),
+            ego_identity: OnceLock::new(),
             saved: Mutex::new(true),
             _lock,
             _folder: None,
@@ -359,9 +389,21 @@ impl Suite {
         self.options.ego.as_deref().unwrap_or(&self.profile.ego)
     }
 
+    /// What the ego is, with what its files hold. They are read once: a network is large, and a run speaks of one ego.
+    ///
+    /// # Errors
+    /// Its command cannot be read.
+    pub(crate) fn ego_identity(&self) -> Result<&[String], PipelineError> {
+        if let Some(known) = self.ego_identity.get() {
+            return Ok(known);
+        }
+        let read = external::identity(self.ego(), &self.python)?;
+        Ok(self.ego_identity.get_or_init(|| read))
+    }
+
     /// What the caller allows.
-    pub(crate) fn permissions(&self) -> Permissions {
-        self.permissions
+    pub(crate) fn permissions(&self) -> &Permissions {
+        &self.permissions
     }
 
     /// The suite's folder.
@@ -369,15 +411,19 @@ impl Suite {
         &self.store
     }
 
-    /// The simulator with the ego in it.
+    /// The simulator with the ego in it: one for all stages of a run, as a program may take long to start.
     ///
     /// # Errors
     /// It cannot be set up, or the ego is a program that only the suite names.
-    pub(crate) fn simulator(&self) -> Result<Box<dyn Simulator>, PipelineError> {
+    pub(crate) fn simulator(&self) -> Result<Arc<dyn Simulator>, PipelineError> {
+        if let Some(started) = self.simulator.get() {
+            return Ok(Arc::clone(started));
+        }
         let ego = self.ego();
         refuse_untrusted(ego, self.permissions.trust)?;
         let workers = self.threads.current_num_threads();
-        start_simulator(self.options.simulator, ego, &self.python, workers, self.patience)
+        let started = start_simulator(self.options.simulator, ego, &self.python, workers, self.patience)?;
+        Ok(Arc::clone(self.simulator.get_or_init(|| started.into())))
     }
 
     /// The models' side; absent where the rules play every role.
@@ -412,7 +458,8 @@ impl Suite {
                 return Ok(if is_current { Course::Edited } else { Course::EditedAndOld });
             }
             let failed = unit.outputs.keys().any(|file| is_failure_file(file));
-            if is_current && !failed && changed.is_empty() {
+            let can_tell = !work.inputs.iter().any(|input| input == FILES_UNKNOWN);
+            if is_current && can_tell && !failed && changed.is_empty() {
                 self.save()?;
                 return Ok(Course::Skipped);
             }

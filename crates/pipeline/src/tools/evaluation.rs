@@ -211,7 +211,7 @@ fn model_accounts(
 ) -> Result<Vec<LabelledAccount>, PipelineError> {
     let store = Store::create(&request.out, write_file_whole)?;
     let cast = Cast { paraphrase: request.agent.clone(), ..Cast::default() };
-    let (models, _) = Models::open(&store, &cast, &request.models, true)?;
+    let (models, _) = Models::open(&store, &cast, &request.models, |_| true)?;
     let incidents = recrash_reader::incidents(records);
     let of_report: BTreeMap<&str, &Incident> = incidents
         .iter()

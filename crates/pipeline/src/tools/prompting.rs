@@ -148,11 +148,11 @@ fn question(suite: &Suite, brief: &Brief, role: Role, model: &str) -> Result<Que
     let simulator = suite.simulator()?;
     let first = match stored::<JudgedRun>(suite, &names::first_run(brief.scenario_id)) {
         Some(run) => run,
-        None => run_scenario(&scenario, &simulator, brief.profile, Some(&expectation))?,
+        None => run_scenario(&scenario, &*simulator, brief.profile, Some(&expectation))?,
     };
     let draft: &ScenarioDraft = scenario.draft();
     let parameters = parameters(draft, &narrative, brief.profile);
-    let scoring = Scoring::new(draft, &parameters, &expectation, brief.profile, &simulator, &first);
+    let scoring = Scoring::new(draft, &parameters, &expectation, brief.profile, &*simulator, &first);
     let values: Vec<f64> = parameters.iter().map(|parameter| parameter.start).collect();
     let score = scoring.score(&values);
     let history = [TunePoint { number: 0, proposed_by: "start".into(), values, score }];

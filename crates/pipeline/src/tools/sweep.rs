@@ -10,8 +10,8 @@ use crate::files::store::{Store, io};
 use crate::profiles::load_profile;
 use crate::reading::named;
 use crate::reading::scenarios::read_scenario;
-use crate::simulators::external::Patience;
-use crate::simulators::{Simulator, SimulatorKind, start_simulator};
+use crate::simulators::external::{Patience, default_python};
+use crate::simulators::{Simulator, SimulatorKind, drives_on_metadrive_alone, start_simulator};
 use crate::suite::names;
 use crate::suite::{Suite, refuse_untrusted, thread_pool};
 use crate::tools::tuning::movable;
@@ -125,6 +125,7 @@ pub struct SweptScenario {
 pub struct Sweep {
     points: SweepPoints,
     ego: String,
+    simulator: SimulatorKind,
     patience: Patience,
     rollouts: u64,
     threads: Option<usize>,
@@ -169,7 +170,8 @@ impl Sweep {
         let (bases, fixed) = parted(bases, &request.source.display().to_string())?;
         let points = SweepPoints::new(bases, profile, request.seed);
         let (rollouts, threads, patience) = (request.rollouts, request.threads, request.patience);
-        Ok(Self { points, ego, patience, rollouts, threads, output, passed_over, fixed })
+        let simulator = if drives_on_metadrive_alone(&ego) { SimulatorKind::Metadrive } else { SimulatorKind::Native };
+        Ok(Self { points, ego, simulator, patience, rollouts, threads, output, passed_over, fixed })
     }
 
     /// Ego that drives.
@@ -213,7 +215,8 @@ impl Sweep {
     /// The table cannot be written, or the ego cannot be started. A rollout cannot fail: it gets its verdict.
     pub fn run(&self, progress: &(dyn Fn(u64) + Sync)) -> Result<SweepSummary, PipelineError> {
         let threads = thread_pool(self.threads.unwrap_or(0))?;
-        let simulator = start_simulator(SimulatorKind::Native, &self.ego, Path::new(""), 1, self.patience)?;
+        let workers = threads.current_num_threads();
+        let simulator = start_simulator(self.simulator, &self.ego, &default_python(), workers, self.patience)?;
         let failed = |source| io("write", self.output.name(), source);
         let (begun, summary) = self.write(self.output.begin()?, &threads, &simulator, progress, &failed)?;
         begun.finish().map_err(failed)?;

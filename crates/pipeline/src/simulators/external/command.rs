@@ -1,13 +1,13 @@
 //! The command of an external ego, as it is typed: `cmd:PROGRAM [ARGS]`, or `py:MODULE:NAME` for Python.
 
 use std::fmt;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// What an ego's name begins with where it is a program.
 pub const EGO_COMMAND_PREFIX: &str = "cmd:";
 
 /// What an ego's name begins with where it is a class or function in Python.
-const PYTHON_PREFIX: &str = "py:";
+pub(crate) const PYTHON_PREFIX: &str = "py:";
 
 /// The variable that names the Python interpreter, and the one where it does not.
 const PYTHON: (&str, &str) = ("RECRASH_PYTHON", "python3");
@@ -20,16 +20,38 @@ const PYTHON_MODULE: &str = "recrash.ego";
 pub struct EgoCommand {
     /// As typed, prefix and all.
     text: String,
-    /// The program to look for, or its path.
+    /// The program to look for, or its path. [`PYTHON_PREFIX`] names none: see [`EgoCommand::interpreted_by`].
     pub(crate) program: String,
     pub(crate) arguments: Vec<String>,
+    is_python: bool,
+}
+
+/// A class or function in Python that drives.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct PythonEgo<'a> {
+    /// A module, or the path of a file `.py`.
+    pub module: &'a str,
+    /// The class or function in it.
+    pub name: &'a str,
+}
+
+impl PythonEgo<'_> {
+    /// The file, where it is named by its path.
+    pub(crate) fn file(&self) -> Option<&Path> {
+        self.module.ends_with(".py").then(|| Path::new(self.module))
+    }
+}
+
+/// The interpreter of who names none: `RECRASH_PYTHON`, else `python3`.
+pub fn default_python() -> PathBuf {
+    std::env::var_os(PYTHON.0).map_or_else(|| PYTHON.1.into(), PathBuf::from)
 }
 
 impl EgoCommand {
     /// Reads `cmd:PROGRAM [ARGS]` or `py:MODULE:NAME`; `None` where the name begins with neither.
     ///
-    /// `MODULE` is a module of Python's, or the path of a file `.py`; `NAME` a class or function in it. The interpreter is the
-    /// one that `RECRASH_PYTHON` names, else `python3`, and has the package recrash.
+    /// `MODULE` is a module of Python's, or the path of a file `.py`; `NAME` a class or function in it. The interpreter is named
+    /// later ([`EgoCommand::interpreted_by`]), and has the package recrash.
     ///
     /// Words are separated by white space; quotes of both kinds and backslashes work as in a shell. No shell is run.
     ///
@@ -43,7 +65,7 @@ impl EgoCommand {
         let mut words = split(line).ok_or_else(|| format!("a quote is not closed in the ego '{ego}'"))?.into_iter();
         match words.next() {
             Some(program) if !program.is_empty() => {
-                Ok(Some(Self { text: ego.to_owned(), program, arguments: words.collect() }))
+                Ok(Some(Self { text: ego.to_owned(), program, arguments: words.collect(), is_python: false }))
             }
             _ => Err("the ego cmd: needs a program, such as 'cmd:python3 my_ego.py'".to_owned()),
         }
@@ -57,9 +79,24 @@ impl EgoCommand {
                 "the ego {ego} needs a module and a name in it, such as py:my_stack:Planner or py:ego.py:drive"
             ));
         };
-        let program = std::env::var(PYTHON.0).unwrap_or_else(|_| PYTHON.1.to_owned());
         let arguments = ["-m", PYTHON_MODULE, module, name].map(str::to_owned).to_vec();
-        Ok(Self { text: ego.to_owned(), program, arguments })
+        Ok(Self { text: ego.to_owned(), program: PYTHON.1.to_owned(), arguments, is_python: true })
+    }
+
+    /// With this interpreter, where it is a class or function in Python; any other program as it is.
+    pub fn interpreted_by(self, python: &Path) -> Self {
+        match self.is_python {
+            true => Self { program: python.to_string_lossy().into_owned(), ..self },
+            false => self,
+        }
+    }
+
+    /// The class or function in Python that it is, where it is one.
+    pub(crate) fn python(&self) -> Option<PythonEgo<'_>> {
+        match self.arguments.as_slice() {
+            [_, _, module, name] if self.is_python => Some(PythonEgo { module, name }),
+            _ => None,
+        }
     }
 
     /// Whether the program can be found, as far as that is seen without starting it: on Windows names go without endings.
@@ -144,6 +181,9 @@ mod tests {
         let command = EgoCommand::parse("py:egos/mine.py:Careful").unwrap().unwrap();
         assert_eq!(command.arguments, ["-m", "recrash.ego", "egos/mine.py", "Careful"]);
         assert_eq!(command.as_str(), "py:egos/mine.py:Careful");
+        assert_eq!(command.interpreted_by(Path::new("venv/bin/python")).program, "venv/bin/python");
+        let other = EgoCommand::parse("cmd:ego").unwrap().unwrap();
+        assert_eq!(other.clone().interpreted_by(Path::new("python")), other);
         for wrong in ["py:", "py:mine", "py:mine:", "py::Careful"] {
             assert!(EgoCommand::parse(wrong).unwrap_err().contains("needs a module and a name"), "{wrong}");
         }

@@ -9,7 +9,9 @@ mod fingerprint;
 mod process;
 mod protocol;
 
-pub use command::{EGO_COMMAND_PREFIX, EgoCommand};
+pub(crate) use command::PYTHON_PREFIX;
+pub use command::{EGO_COMMAND_PREFIX, EgoCommand, default_python};
+pub(crate) use fingerprint::FILES_UNKNOWN;
 pub use process::{EgoFault, Patience};
 pub use protocol::{told_at_reset, told_at_step};
 
@@ -18,15 +20,18 @@ use process::EgoProcess;
 use recrash_model::rollout::{Rollout, Substeps};
 use recrash_roads::{RunError, Scenario, Simulator};
 use recrash_sim::{Native, RolloutRecorder, Runner};
+use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 
-/// What an ego is, for telling whether a result is of it as it is now: its name, and a program's files.
+/// What an ego is, for telling whether a result is of it as it is now: its name, and a program's files, which are read. `python`
+/// runs one that is a class or function in Python.
 ///
 /// # Errors
 /// The command cannot be read.
-pub(crate) fn identity(ego: &str) -> Result<String, PipelineError> {
+pub(crate) fn identity(ego: &str, python: &Path) -> Result<Vec<String>, PipelineError> {
     let command = EgoCommand::parse(ego).map_err(PipelineError::bad_input)?;
-    Ok(command.map_or_else(|| ego.to_owned(), |command| fingerprint::fingerprint(&command)))
+    let made = command.map(|command| fingerprint::fingerprint(&command.interpreted_by(python)));
+    Ok(made.unwrap_or_else(|| vec![ego.to_owned()]))
 }
 
 /// The native simulator with a program as the ego, ready to drive. It may be shared between threads.

@@ -14,14 +14,14 @@ use crate::files::json::to_json;
 use crate::files::output::Outputs;
 use crate::files::store::io;
 use crate::progress::{Progress, ProgressEvent};
-use crate::simulators::external::Patience;
+use crate::simulators::external::{Patience, default_python};
 use crate::simulators::{Simulator, SimulatorKind, start_simulator};
 use rayon::prelude::*;
 use recrash_drivers::{Concrete, Grid, drive};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fmt::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// What was found: the file that says that a folder is one of ours.
 const CHECK_FILE: &str = "check-driver.json";
@@ -125,7 +125,7 @@ pub fn check_driver(request: &CheckDriverRequest, progress: &dyn Progress) -> Re
     let simulator = match &request.ego {
         Some(ego) => {
             let programs = rayon::current_num_threads();
-            Some(start_simulator(SimulatorKind::Native, ego, Path::new(""), programs, request.patience)?)
+            Some(start_simulator(SimulatorKind::Native, ego, &default_python(), programs, request.patience)?)
         }
         None => None,
     };
