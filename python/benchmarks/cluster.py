@@ -169,17 +169,17 @@ def main() -> None:
     what = f"{len(paths):,} tests, Python ego"
     plain = measured(f"command, {what}", lambda: subprocess.run(command, check=False), of_children)
     cluster.test(paths[: 8 * cores], Steady, batch=1)
-    tables: list[pyarrow.Table] = []
+    tables: list[recrash.Table] = []
     on = measured(f"Ray, {what}", lambda: tables.append(cluster.test(paths, Steady)), spent)
     tests = json.loads((folder / "results.json").read_text())["tests"]
     hashes = [test["runs"][0]["outcome"]["state_hash"] for test in tests]
-    print(f"rows equal: {sorted(hashes) == sorted(tables[0]['state_hash'].to_pylist())}")
+    print(f"rows equal: {sorted(hashes) == sorted(tables[0].to_dict()['state_hash'])}")
     wall, processor = on[0] / plain[0] - 1, on[1] / plain[1] - 1
     print(f"overhead by the wall: {wall:+.1%}, by processor time: {processor:+.1%} (asked for: 15 % at most)\n")
 
     rows: list[object] = []
     alone = measured(f"one process, {what}", lambda: rows.append(recrash.test(paths, Steady).to_dicts()), time.process_time)
-    print(f"rows equal: {rows[0] == tables[0].to_pylist()}")
+    print(f"rows equal: {rows[0] == tables[0].to_dicts()}")
     print(f"Ray over one process by processor time: {on[1] / alone[1] - 1:+.1%}")
     ray.shutdown()
 

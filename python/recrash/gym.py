@@ -131,6 +131,11 @@ def _chosen(suite: Source, part: Split | None, held_out_share: float, crash_type
 class _Core:
     """A batch of runs, with the spaces and checks that both environments share."""
 
+    def __reduce__(self) -> Any:
+        raise TypeError(
+            "an environment is a simulation that runs, and is not pickled nor copied; make it anew from its scenarios"
+        )
+
     def __init__(
         self,
         scenarios: Sequence[Scenario],
@@ -429,7 +434,10 @@ class CrashEnv(gymnasium.Env[Any, Any]):
         return self._core.observations(copy=True)[0]
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
-        """Begin an episode. ``options``: ``scenario``, the id of one or its position."""
+        """Begin an episode. ``options``: ``scenario``, the id of one or its position; drawn without it."""
+        unknown = (options or {}).keys() - {"scenario"}
+        if unknown:
+            raise InputError(f"reset has no option {sorted(unknown)}; it has: scenario")
         super().reset(seed=seed)
         if seed is None and not self._seeded:
             seed = int(self.np_random.integers(1 << 62))
@@ -495,9 +503,12 @@ class CrashEnv(gymnasium.Env[Any, Any]):
 
 
 def evaluate(policy: Callable[[Any], Any], suite: Source, **options: Any) -> list[Run]:
-    """Drive every scenario once with a policy, from a batch of observations to a batch of actions; the judged runs, in order.
+    """Drive every scenario once with a policy; the judged runs, in order.
 
-    ``options`` are those of :class:`CrashVectorEnv` but ``num_envs`` and ``autoreset_mode``; episodes are always judged.
+    The policy is handed the observations of all scenarios at once, as :class:`CrashVectorEnv` gives them (a row each; a dict of
+    arrays with ``"raster"``), and gives an action for each: ``lambda seen: numpy.stack([one(each) for each in seen])`` where
+    ``one`` goes by a single observation. ``options`` are those of :class:`CrashVectorEnv` but ``num_envs`` and
+    ``autoreset_mode``; episodes are always judged.
     """
     if own := options.keys() & {"num_envs", "autoreset_mode"}:
         raise InputError(f"evaluate chooses {', '.join(sorted(own))} itself; leave it out")
@@ -506,13 +517,32 @@ def evaluate(policy: Callable[[Any], Any], suite: Source, **options: Any) -> lis
     scenarios = _chosen(suite, options.pop("split", None), options.pop("held_out_share", 0.25), options.pop("crash_types", None))
     env = CrashVectorEnv(scenarios, len(scenarios), **options)
     observations, _ = env.reset(seed=0, options={"scenarios": np.arange(len(scenarios))})
+    actions = _first_actions(policy, observations, env)
     runs: list[Run | None] = [None] * len(scenarios)
-    while any(run is None for run in runs):
-        observations, _, _, _, infos = env.step(policy(observations))
+    while True:
+        observations, _, _, _, infos = env.step(actions)
         for slot in np.flatnonzero(infos.get("_run", ())):
             # Later episodes of a slot are others' scenarios; the first is its own.
             runs[slot] = runs[slot] or infos["run"][slot]
-    return [run for run in runs if run is not None]
+        if all(run is not None for run in runs):
+            return [run for run in runs if run is not None]
+        actions = policy(observations)
+
+
+def _first_actions(policy: Callable[[Any], Any], observations: Any, env: CrashVectorEnv) -> Any:
+    """Ask a policy for the first time: one that goes by a single observation is told how it is wrapped."""
+    batch = f"evaluate hands the policy the observations of all {env.num_envs} scenarios at once, and wants an action for each"
+    wrap = "wrap a policy of one observation: lambda seen: numpy.stack([policy(each) for each in seen])"
+    try:
+        actions = policy(observations)
+    except Exception as error:
+        if hasattr(error, "add_note"):  # Since Python 3.11.
+            error.add_note(f"{batch}; {wrap}")
+        raise
+    wanted, given = env.action_space.shape, np.shape(actions)
+    if given != wanted:
+        raise InputError(f"{batch}, of shape {wanted}; it gave shape {given}; {wrap}")
+    return actions
 
 
 gymnasium.register(ENVIRONMENT, "recrash.gym:CrashEnv", vector_entry_point="recrash.gym:CrashVectorEnv")

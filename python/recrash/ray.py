@@ -32,7 +32,7 @@ import ray
 from ray.util.scheduling_strategies import NodeAffinitySchedulingStrategy
 
 from recrash import _recrash
-from recrash._recrash import Accounts, Scenario
+from recrash._recrash import Accounts, Scenario, Table
 from recrash._show import counted, wants_progress
 from recrash.errors import RecrashError
 from recrash.suite import Location, as_result, in_tested, load_scenarios, read, row_of, runs, tune_one
@@ -59,6 +59,9 @@ TEST = pyarrow.schema(
 )
 TUNE = pyarrow.schema([*TEST, ("points", pyarrow.int64()), ("moved", pyarrow.string()), ("tuned", pyarrow.string())])
 CORPUS = pyarrow.schema([("incident", pyarrow.string()), ("standing", pyarrow.string()), ("reason", pyarrow.string()), *TEST])
+
+#: Kinds of columns of recrash's own tables, by pyarrow's types.
+KINDS = {"bool": "flag", "int64": "whole", "double": "number", "string": "text"}
 
 
 class Batch(NamedTuple):
@@ -88,7 +91,7 @@ def test(
     out: Location | None = None,
     progress: bool | None = None,
     cluster: bool = True,
-) -> pyarrow.Table:
+) -> Table:
     """Test an ego in scenarios, as :func:`recrash.test` does: the same rows in the same order.
 
     ``batch`` scenarios are a task. With ``out``, a path that fsspec knows, the rows are written there as Parquet too.
@@ -111,7 +114,8 @@ def test(
         work = _Work(_test_by_name, (ego, config), None)
     else:
         work = _Work(_test_in_actor, (ego, config), _Seat)
-    return _done(work, batches, "test", TEST, out, progress, cluster, actors)
+    table: Table = _done(work, batches, "test", TEST, out, progress, cluster, actors)
+    return table
 
 
 def sweep(
@@ -126,7 +130,7 @@ def sweep(
     out: Location | None = None,
     progress: bool | None = None,
     cluster: bool = True,
-) -> pyarrow.Table | None:
+) -> Table | None:
     """Run very many rollouts around scenarios, as :func:`recrash.sweep` does: the same rows in the same order.
 
     With ``out`` the rows are written there as Parquet, a row group for each batch, and nothing is kept in memory nor given.
@@ -138,7 +142,8 @@ def sweep(
     of = _id("sweep", config, *(each.to_json() for each in loaded))
     ranges = [(begin, min(begin + batch, rollouts)) for begin in range(0, rollouts, batch)]
     batches = [Batch(_id(of, each), each, f"rollouts {each[0]} to {each[1] - 1}", None) for each in ranges]
-    return _done(_Work(_sweep, (loaded, config), None), batches, "sweep", schema, out, progress, cluster, None)
+    table: Table | None = _done(_Work(_sweep, (loaded, config), None), batches, "sweep", schema, out, progress, cluster, None)
+    return table
 
 
 def tune(
@@ -152,7 +157,7 @@ def tune(
     out: Location | None = None,
     progress: bool | None = None,
     cluster: bool = True,
-) -> tuple[list[Scenario], pyarrow.Table]:
+) -> tuple[list[Scenario], Table]:
     """Search the nearest failure around each scenario, as :func:`recrash.tune` does; a scenario is a task.
 
     The column ``tuned`` has the tuned scenario as its file would have it.
@@ -164,8 +169,8 @@ def tune(
         return lambda why: _table([{**row_of(scenario, RecrashError(why)), "tuned": scenario.to_json()}], TUNE)
 
     batches = [Batch(_id("tune", config, each.to_json()), (each,), each.id, lost(each)) for each in loaded]
-    table = _done(_Work(_tune, (config,), None), batches, "tune", TUNE, out, progress, cluster, None)
-    return [_restored(each, json) for each, json in zip(loaded, table["tuned"].to_pylist(), strict=True)], table
+    table: Table = _done(_Work(_tune, (config,), None), batches, "tune", TUNE, out, progress, cluster, None)
+    return [_restored(each, json) for each, json in zip(loaded, table.to_dict()["tuned"], strict=True)], table
 
 
 def corpus(
@@ -182,7 +187,7 @@ def corpus(
     out: Location | None = None,
     progress: bool | None = None,
     cluster: bool = True,
-) -> pyarrow.Table:
+) -> Table:
     """Reconstruct every incident of crash files, and test an ego in each that is told. A row an incident.
 
     The files are read here; ``batch`` accounts are a task, which reconstructs and tests them. ``simulator`` and ``python`` are
@@ -203,9 +208,9 @@ def corpus(
         name = f"{incidents[begin]} to {incidents[begin + len(part) - 1]}"
         batches.append(Batch(_id("corpus", ego, config, part.__reduce__()[1][0]), (part,), name, lost(begin)))
     by_name = (ego is None or isinstance(ego, str)) and simulator != "metadrive"
-    return _done(
-        _Work(_corpus, (ego, config), None if by_name else _Seat), batches, "corpus", CORPUS, out, progress, cluster, actors
-    )
+    work = _Work(_corpus, (ego, config), None if by_name else _Seat)
+    table: Table = _done(work, batches, "corpus", CORPUS, out, progress, cluster, actors)
+    return table
 
 
 def _cut(items: Sequence[Any], size: int) -> list[Sequence[Any]]:
@@ -223,6 +228,12 @@ def _id(*parts: object) -> str:
 
 def _table(rows: list[dict[str, Any]], schema: pyarrow.Schema) -> pyarrow.Table:
     return pyarrow.Table.from_pylist(rows, schema=schema)
+
+
+def _own(table: pyarrow.Table) -> Table:
+    """Make a table of pyarrow's, whose columns came from recrash's own, one of those again."""
+    kinds = [(field.name, KINDS[str(field.type)]) for field in table.schema]
+    return Table._restore(kinds, table.num_rows, table.to_pydict())
 
 
 def _restored(scenario: Scenario, json: str) -> Scenario:
@@ -280,7 +291,9 @@ def _corpus(shared: tuple[Any, ...], seat: _Seat | None, accounts: Accounts) -> 
     rows = []
     for row in made.to_dicts():
         known = results.get(row["scenario"]) if row["scenario"] in by_id else None
-        rows.append({**row, **(known or {"scenario": None}), "crash_type": row["crash_type"]})
+        # Speeds of the recorded crash have the names of those of the test.
+        own = {name: row[name] for name in ("incident", "standing", "reason")}
+        rows.append({**own, **(known or {"scenario": None}), "crash_type": row["crash_type"]})
     return _table(rows, CORPUS)
 
 
@@ -302,7 +315,10 @@ def _done(
     cluster: bool,
     actors: int | None,
 ) -> Any:
-    """Do all batches, and put their tables down in order: in a file, and in a table unless it would be a sweep's."""
+    """Do all batches, and put their tables down in order: in a file, and in a table unless it would be a sweep's.
+
+    On the way tables are pyarrow's; who asked gets recrash's own, as without a cluster.
+    """
     tables = _on_cluster(work, batches, actors) if cluster else _here(work, batches)
     shown = wants_progress(progress)
     keeps = out is None or name != "sweep"
@@ -311,8 +327,8 @@ def _done(
         for table in counted(tables, name, len(batches), shown):
             write(table)
             if keeps:
-                rows.append(table)
-    return pyarrow.concat_tables(rows) if rows else schema.empty_table() if keeps else None
+                rows.append(_own(table))
+    return Table.concat(rows or [_own(schema.empty_table())]) if keeps else None
 
 
 @contextmanager

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import copy
 import json
+import pickle
+import sys
 
 import gymnasium
 import numpy as np
@@ -206,6 +209,30 @@ def test_evaluate_drives_every_scenario_once(crashes):
     assert [run.scenario_id for run in runs] == [scenario.id for scenario in recrash.load_scenarios(crashes)]
 
 
+def test_a_policy_of_one_observation_is_told_how_it_is_wrapped(crashes):
+    with pytest.raises(InputError, match=r"of shape \(\d+, 2\); it gave shape \(2,\); wrap a policy of one observation"):
+        evaluate(lambda seen: np.zeros(2, np.float32), crashes)
+
+    def one(seen):
+        assert seen.ndim == 1, "one observation at a time"
+        return np.zeros(2, np.float32)
+
+    with pytest.raises(AssertionError, match="one observation at a time") as raised:
+        evaluate(one, crashes)
+    if sys.version_info >= (3, 11):
+        assert "numpy.stack" in raised.value.__notes__[0]
+    few = recrash.load_scenarios(crashes)[:3]
+    assert len(evaluate(lambda seen: np.stack([one(each) for each in seen]), few)) == 3
+
+
+@pytest.mark.parametrize("environment", [CrashEnv, CrashVectorEnv])
+def test_an_environment_is_neither_pickled_nor_copied(crashes, environment):
+    env = environment(crashes)
+    for does in (pickle.dumps, copy.deepcopy):
+        with pytest.raises(TypeError, match="make it anew from its scenarios"):
+            does(env)
+
+
 @pytest.mark.parametrize("option", [{"judge": False}, {"autoreset_mode": "same_step"}, {"num_envs": 2}])
 def test_evaluate_refuses_what_would_give_it_no_runs(crashes, option):
     with pytest.raises(InputError, match=next(iter(option))):
@@ -297,6 +324,8 @@ def test_a_step_before_the_first_reset_and_bad_resets_are_told(crashes):
         env.reset(options={"reset_mask": np.zeros(2, bool)})
     with pytest.raises(InputError, match="scenario 99"):
         env.reset(options={"scenarios": [0, 99]})
+    with pytest.raises(InputError, match=r"no option \['nonsense'\]; it has: scenario"):
+        CrashEnv(crashes).reset(options={"nonsense": 1})
     with pytest.raises(InputError, match="no scenario 'nobody'"):
         CrashEnv(crashes).reset(options={"scenario": "nobody"})
 

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import copy
+import pickle
+
 import pandas
 import polars
 import pyarrow
 import pytest
-from conftest import case
+from conftest import case, command
 
 import recrash
 from recrash import InputError, Scenario, Table
@@ -21,6 +24,52 @@ def test_the_sample_is_read_and_reconstructed():
     assert accounts[-1] == accounts[len(accounts) - 1]
     with pytest.raises(IndexError):
         accounts[len(accounts)]
+
+
+def test_records_and_accounts_are_joined_by_their_incident():
+    accounts = pandas.DataFrame.from_arrow(recrash.read().table)
+    records = pandas.DataFrame.from_arrow(recrash.records(all_rows=True))
+    joined = accounts.merge(records, on=["report", "version"], suffixes=("", "_of_record"))
+    assert len(joined) == len(accounts) and (joined["incident"] == joined["incident_of_record"]).all()
+    assert (joined["incident"] != joined["same_incident_id"]).any()
+    assert joined["entity"].eq(joined["entity_of_record"]).all()
+
+
+def test_a_pickled_or_copied_table_is_the_same(rows):
+    table = Table.concat([Table.of_rows([*rows, {"name": None, "count": None, "share": 1 / 3, "yes": None, "more": "x"}])] * 2)
+    empty = Table.of_rows([{"a": None}])
+    for one in (table, empty, Table.of_rows([]), table.head(0)):
+        for same in (pickle.loads(pickle.dumps(one)), copy.deepcopy(one), copy.copy(one)):
+            assert pyarrow.table(same) == pyarrow.table(one)
+
+
+def test_accounts_keep_their_columns_when_they_are_pickled():
+    accounts = recrash.read()
+    part = pickle.loads(pickle.dumps(accounts.part(3, 9)))
+    assert part.table.to_dicts() == accounts.table.to_dicts()[3:9]
+    assert part.table.to_dict()["entity"][0]
+
+
+def test_made_has_the_impact_of_what_is_shown():
+    scenarios, made = recrash.read().reconstruct()
+    by_id = {scenario.id: scenario for scenario in scenarios}
+    rows = made.to_dicts()
+    assert {row["standing"] for row in rows if row["delta_v_mps"] is None} <= {"not_shown", "untold"}
+    shown = [row for row in rows if row["standing"] == "shown"]
+    assert len(shown) == len(scenarios) and all(row["facts_shown"] <= row["facts_told"] for row in shown)
+    for row in shown[::25]:
+        severity = by_id[row["scenario"]].run("recorded").severity
+        assert row["ego_impact_speed_mps"] == severity["first"]["impact_speed_mps"]
+        assert row["other_impact_speed_mps"] == severity["second"]["impact_speed_mps"]
+        assert row["delta_v_mps"] == severity["first"]["delta_v_mps"]
+
+
+def test_scenes_of_the_command_keep_their_crash_types(tmp_path):
+    done = command("reconstruct", "--where", "road = highway", "--to-dir", tmp_path / "scenes", "--quiet")
+    assert done.returncode == 0, done.stderr
+    types = {scenario.id: scenario.crash_type for scenario in recrash.load_scenarios(tmp_path / "scenes")}
+    told = {each.id: each.crash_type for each in recrash.read(where="road = highway").reconstruct()[0]}
+    assert types == told and len(types) > 10
 
 
 def test_a_filter_keeps_some_records_and_a_wrong_one_is_told():

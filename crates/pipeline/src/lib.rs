@@ -36,8 +36,8 @@ pub use profiles::{PROFILE_NAMES, load_profile};
 pub use progress::{NoProgress, Progress, ProgressEvent};
 pub use reading::accounts::{Accounts, ToldFact, read_accounts, told_facts};
 pub use reading::fetching::{CrashKind, FetchRequest, Fetched, PublishedEdition, fetch};
-pub use reading::records::{TableFormat, read_records, record_outputs, write_records};
-pub use reading::retelling::{Retold, fact_shares, reconstruct_accounts, type_shares};
+pub use reading::records::{TableFormat, read_records, record_outputs, record_table, write_records};
+pub use reading::retelling::{Impact, Retold, fact_shares, reconstruct_accounts, type_shares};
 pub use reading::scenarios::{FileRequest, FileRun, parse_scenario, read_scenario, simulate_file};
 pub use recrash_agents::llm::{Caps, Role, Spent};
 pub use recrash_child::end_all as end_programs;
@@ -47,7 +47,7 @@ pub use recrash_fetch::Limits as FetchLimits;
 pub use recrash_lab::causes::{CauseGroup, by_cause};
 pub use recrash_lab::run_scenario;
 pub use recrash_model::run::JudgedRun;
-pub use recrash_records::{Column, Distribution, FILTER_HELP, RecordTable, TableRows, distributions, record_table};
+pub use recrash_records::{Column, Distribution, FILTER_HELP, RecordTable, TableRows, distributions};
 pub use recrash_report::comparison::{github as github_annotations, sentence as comparison_sentence};
 pub use recrash_report::picture;
 pub use recrash_roads::scenario_schema as schema;
@@ -61,7 +61,7 @@ pub use stages::{
     unfaithful,
 };
 pub use suite::{MayAsk, Permissions, Resources, Stage, Suite};
-pub use tools::accounts::{account_table, write_accounts};
+pub use tools::accounts::{Reported, ReportedColumns, account_table, reported_columns, write_accounts};
 pub use tools::assessing::{SevereFailure, SuiteSeverity, suite_coverage, suite_severity};
 pub use tools::bench_sim::{SimBench, SimBenchRequest, bench_sim};
 pub use tools::check_driver::{
@@ -88,7 +88,7 @@ pub use tools::parity::{
     random_scenario, random_scene,
 };
 pub use tools::prompting::{Prompt, PromptRequest, prompt};
-pub use tools::reconstructing::write_reconstructions;
+pub use tools::reconstructing::{reconstruction_table, write_reconstructions};
 pub use tools::running::{ask_for_situation, run_many};
 #[cfg(feature = "parquet")]
 pub use tools::sweep::{Sweep, SweepPoints, SweepRequest, SweepSummary, SweptScenario, Vary};

@@ -3,6 +3,7 @@
 use crate::constants::{
     COMMITTED_M, HORIZON_S, MERGED_M, MERGING_S, PATIENCE_STEPS, STANDING_MPS, THEIR_ACCELERATION_MPS2,
 };
+use recrash_model::math;
 use recrash_roads::{Conflict, Footprint, LanePath};
 use serde::Serialize;
 
@@ -19,7 +20,14 @@ pub struct Crossing {
     pub theirs: Stretch,
     /// The paths go on in one lane; then the stretches have no end.
     pub merges: bool,
+    /// They cross at so small an angle that who is ahead there is followed, rather than waited for. No policy of the paper's asks.
+    #[serde(skip)]
+    pub same_way: bool,
 }
+
+/// Below this angle paths go the same way: the stretch on which the two can touch has no clear end any more, and is cut off there
+/// (`Conflict::reaches`).
+const SAME_WAY_COS: f64 = 0.866;
 
 /// A stretch of a path.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -38,6 +46,7 @@ impl Crossing {
         conflict: Conflict,
     ) -> Self {
         let (reach, other_reach) = conflict.reaches((path, size), (other_path, other_size));
+        let turned = path.pose(conflict.s_a, 0.0).heading - other_path.pose(conflict.s_b, 0.0).heading;
         let stretch = |s: f64, reach: f64| Stretch {
             from: s - reach,
             to: if conflict.merges { f64::INFINITY } else { s + reach },
@@ -48,7 +57,14 @@ impl Crossing {
             mine: stretch(conflict.s_a, reach),
             theirs: stretch(conflict.s_b, other_reach),
             merges: conflict.merges,
+            same_way: !conflict.merges && math::sincos(turned).1 > SAME_WAY_COS,
         }
+    }
+
+    /// How far the other is ahead of this one, centre to centre, where both go the same way; negative where it is behind. [m]
+    pub fn lead(&self, me: Traveller, other: Traveller) -> Option<f64> {
+        let left = |stretch: Stretch, at: Traveller| 0.5 * (stretch.from + stretch.to) - at.s_m;
+        self.same_way.then(|| left(self.mine, me) - left(self.theirs, other))
     }
 }
 
@@ -137,6 +153,7 @@ mod tests {
         mine: Stretch { from: 20.0, to: 26.0 },
         theirs: Stretch { from: 20.0, to: 26.0 },
         merges: false,
+        same_way: false,
     };
 
     fn waits(my_s: f64, their_s: f64) -> Option<f64> {

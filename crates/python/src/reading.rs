@@ -6,7 +6,8 @@ use crate::table::Table;
 use pyo3::prelude::*;
 use recrash_model::account::Account;
 use recrash_pipeline::{
-    NoProgress, Options, RecordSource, TableRows, account_table, reconstruct_accounts, record_table,
+    NoProgress, Options, RecordSource, ReportedColumns, TableRows, account_table, reconstruct_accounts,
+    reconstruction_table, record_table, reported_columns,
 };
 use std::path::PathBuf;
 
@@ -14,6 +15,7 @@ use std::path::PathBuf;
 #[pyclass(frozen, module = "recrash")]
 pub struct Accounts {
     accounts: recrash_pipeline::Accounts,
+    columns: ReportedColumns,
 }
 
 #[pymethods]
@@ -21,7 +23,7 @@ impl Accounts {
     /// Main facts of every account, a row an incident.
     #[getter]
     fn table(&self, py: Python<'_>) -> PyResult<Table> {
-        Table::of_table(py, account_table(&self.accounts.accounts))
+        Table::of_table(py, account_table(&self.accounts.accounts, &self.columns))
     }
 
     /// Rows of the files that are crash reports.
@@ -47,53 +49,42 @@ impl Accounts {
         let accounts = &self.accounts.accounts;
         let retold = py.detach(|| reconstruct_accounts(accounts, &NoProgress));
         let mut scenarios = Vec::new();
-        let mut rows = Vec::new();
         for each in &retold {
+            let Some(made) = each.shown() else { continue };
             let account = &accounts[each.account];
-            let shown = each.result.as_ref().ok().filter(|_| each.untold().is_none());
-            let standing = match &each.result {
-                Ok(_) if shown.is_some() => "shown",
-                Ok(_) => "not_shown",
-                Err(_) => "untold",
-            };
-            if let Some(made) = shown {
-                let checked = recrash_roads::check(made.draft.clone()).map_err(|_| {
-                    input(py, format!("{}: its own reconstruction does not pass the check", account.incident))
-                })?;
-                scenarios.push(Scenario::of(checked.value, made.assumed.clone(), crash_type(account)));
-            }
-            rows.push(serde_json::json!({
-                "incident": account.incident,
-                "crash_type": crash_type(account),
-                "standing": standing,
-                "reason": each.reason(),
-                "scenario": shown.map(|made| &made.draft.id),
-            }));
+            let checked = recrash_roads::check(made.draft.clone()).map_err(|_| {
+                input(py, format!("{}: its own reconstruction does not pass the check", account.incident))
+            })?;
+            scenarios.push(Scenario::of(checked.value, made.assumed.clone(), crash_type(account)));
         }
-        let rows = to_python(py, &rows)?;
-        let table = py.get_type::<Table>().call_method1("of_rows", (rows,))?;
-        Ok((scenarios, table.cast::<Table>()?.get().copy()))
+        let table = py.detach(|| reconstruction_table(accounts, &retold));
+        Ok((scenarios, Table::of_table(py, table)?))
     }
 
     /// Accounts `begin` to `end` (which is not among them), without what the files say besides: to share work out.
     fn part(&self, begin: usize, end: usize) -> Self {
         let all = &self.accounts.accounts;
         let end = end.min(all.len());
-        Self::alone(all[begin.min(end)..end].to_vec())
+        let part = all[begin.min(end)..end].to_vec();
+        let columns = part.iter().filter_map(|account| self.columns.get_key_value(&account.incident));
+        let columns = columns.map(|(incident, reported)| (incident.clone(), reported.clone())).collect();
+        Self::alone(part, columns)
     }
 
     /// Pickled as the JSON of its accounts, so that it goes from process to process; what the files say besides stays behind.
     #[allow(clippy::type_complexity, reason = "Python's protocol: a callable and its arguments")]
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, (String,))> {
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, (String, String))> {
         let restore = py.get_type::<Self>().getattr("_restore")?;
         let accounts = serde_json::to_string(&self.accounts.accounts).map_err(|error| input(py, error))?;
-        Ok((restore, (accounts,)))
+        let columns = serde_json::to_string(&self.columns).map_err(|error| input(py, error))?;
+        Ok((restore, (accounts, columns)))
     }
 
     /// What `pickle` calls.
     #[staticmethod]
-    fn _restore(py: Python<'_>, accounts: &str) -> PyResult<Self> {
-        serde_json::from_str(accounts).map(Self::alone).map_err(|error| input(py, error))
+    fn _restore(py: Python<'_>, accounts: &str, columns: &str) -> PyResult<Self> {
+        let accounts = serde_json::from_str(accounts).map_err(|error| input(py, error))?;
+        Ok(Self::alone(accounts, serde_json::from_str(columns).map_err(|error| input(py, error))?))
     }
 
     fn __len__(&self) -> usize {
@@ -119,9 +110,9 @@ impl Accounts {
 
 impl Accounts {
     /// Accounts without their files.
-    fn alone(accounts: Vec<Account>) -> Self {
+    fn alone(accounts: Vec<Account>, columns: ReportedColumns) -> Self {
         let (files, incidents, diagnostics) = (Vec::new(), Vec::new(), Vec::new());
-        Self { accounts: recrash_pipeline::Accounts { files, reports: 0, incidents, accounts, diagnostics } }
+        Self { accounts: recrash_pipeline::Accounts { files, reports: 0, incidents, accounts, diagnostics }, columns }
     }
 }
 
@@ -155,7 +146,9 @@ pub fn read_accounts(
 ) -> PyResult<Accounts> {
     let options = options(files, filter, mapping, profile);
     let read = py.detach(|| recrash_pipeline::read_accounts(&options));
-    Ok(Accounts { accounts: read.map_err(|failed| of_library(py, &failed))? })
+    let accounts = read.map_err(|failed| of_library(py, &failed))?;
+    let columns = reported_columns(&accounts.incidents);
+    Ok(Accounts { accounts, columns })
 }
 
 /// Reads crash files into a table of records, every field a column; the built-in sample without any.

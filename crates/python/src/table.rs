@@ -99,6 +99,54 @@ impl Table {
         Ok(all)
     }
 
+    /// Pickled as its columns, each with its kind: a column of nothing keeps it.
+    #[allow(clippy::type_complexity, reason = "Python's protocol: a callable and its arguments")]
+    fn __reduce__<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> PyResult<(Bound<'py, PyAny>, (Vec<(String, String)>, usize, Bound<'py, PyDict>))> {
+        let restore = py.get_type::<Self>().getattr("_restore")?;
+        let fields = self.schema.fields();
+        let kinds = fields.iter().map(|field| (field.name().clone(), kind_name(field.data_type()).to_owned()));
+        Ok((restore, (kinds.collect(), self.__len__(), self.to_dict(py)?)))
+    }
+
+    /// What `pickle` calls.
+    #[staticmethod]
+    fn _restore(
+        py: Python<'_>,
+        kinds: Vec<(String, String)>,
+        rows: usize,
+        values: &Bound<'_, PyDict>,
+    ) -> PyResult<Self> {
+        let mut columns = Vec::new();
+        for (name, kind) in kinds {
+            let of = values.get_item(&name)?.ok_or_else(|| input(py, format!("the pickled table lacks {name}")))?;
+            let column = match kind.as_str() {
+                "flag" => Column::Flag(of.extract()?),
+                "whole" => Column::Whole(of.extract()?),
+                "number" => Column::Number(of.extract()?),
+                _ => Column::Text(of.extract()?),
+            };
+            columns.push((name, array(column)));
+        }
+        let table = Self::of_arrays(py, columns)?;
+        match table.__len__() == rows {
+            true => Ok(table),
+            false => Err(input(py, format!("the pickled table has {} rows, not {rows}", table.__len__()))),
+        }
+    }
+
+    /// A table never changes: a copy is itself.
+    fn __copy__(slf: Py<Self>) -> Py<Self> {
+        slf
+    }
+
+    /// A table never changes: a copy is itself.
+    fn __deepcopy__(slf: Py<Self>, _memo: &Bound<'_, PyAny>) -> Py<Self> {
+        slf
+    }
+
     /// The Arrow PyCapsule interface.
     #[pyo3(signature = (requested_schema=None))]
     fn __arrow_c_stream__<'py>(
@@ -176,6 +224,16 @@ fn array(column: Column) -> ArrayRef {
         Column::Whole(values) => Arc::new(Int64Array::from_iter(values)),
         Column::Number(values) => Arc::new(Float64Array::from_iter(values)),
         Column::Flag(values) => Arc::new(BooleanArray::from_iter(values)),
+    }
+}
+
+/// The kind of a column of this module, by name.
+fn kind_name(kind: &DataType) -> &'static str {
+    match kind {
+        DataType::Boolean => "flag",
+        DataType::Int64 => "whole",
+        DataType::Float64 => "number",
+        _ => "text",
     }
 }
 

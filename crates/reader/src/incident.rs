@@ -40,12 +40,65 @@ const FULL_ENOUGH: f64 = 0.6;
 
 /// Groups records into incidents, in the order of their ids. Every record is in exactly one.
 pub fn incidents(records: &[CrashRecord]) -> Vec<Incident> {
-    let reports: Vec<IncidentReport> = records.iter().map(report).collect();
+    let looks: Vec<Look> = records.iter().map(Look::at).collect();
+    let mut all: Vec<Incident> = groups(&looks).into_iter().map(|(id, group)| incident(&looks, id, group)).collect();
+    all.sort_by(|one, other| one.id.cmp(&other.id));
+    all
+}
+
+/// The id of the incident that each record belongs to, as [`incidents`] groups them: what joins a table of records with accounts.
+pub fn incident_ids<'a>(records: impl Iterator<Item = &'a CrashRecord>) -> Vec<String> {
+    let looks: Vec<Look> = records.map(Look::at).collect();
+    let mut ids = vec![String::new(); looks.len()];
+    for (id, group) in groups(&looks) {
+        for number in group {
+            ids[number].clone_from(&id);
+        }
+    }
+    ids
+}
+
+/// A record, and what decides to which incident it belongs.
+struct Look<'a> {
+    record: &'a CrashRecord,
+    telling: Telling,
+    /// Report ids that its narrative names.
+    names: Vec<String>,
+}
+
+impl<'a> Look<'a> {
+    fn at(record: &'a CrashRecord) -> Self {
+        let telling = match record.redaction {
+            Redaction::Empty => Telling::Unreadable,
+            // A narrative that is withheld in parts may still tell its story.
+            Redaction::Redacted if readable(&record.narrative) < 120 => Telling::Unreadable,
+            _ if only_refers(&record.narrative) => Telling::Refers,
+            _ => Telling::Tells,
+        };
+        let names = report_ids(&record.narrative).filter(|id| *id != record.id.report_id).map(str::to_owned).collect();
+        Self { record, telling, names }
+    }
+
+    fn report(&self) -> IncidentReport {
+        let mut hash = Fnv::default();
+        hash.write_text(&self.record.narrative);
+        IncidentReport {
+            text_hash: hash.hexadecimal(),
+            telling: self.telling,
+            names: self.names.clone(),
+            changed: Vec::new(),
+            record: self.record.clone(),
+        }
+    }
+}
+
+/// Ids of incidents, each with the positions of its records.
+fn groups(reports: &[Look]) -> Vec<(String, Vec<usize>)> {
     let mut sets = Sets::new(reports.len());
     let mut by_report: BTreeMap<&str, usize> = BTreeMap::new();
     let mut by_incident: BTreeMap<&str, usize> = BTreeMap::new();
     for (number, report) in reports.iter().enumerate() {
-        let record = &report.record;
+        let record = report.record;
         match by_report.get(record.id.report_id.as_str()) {
             Some(&first) => sets.join(first, number),
             None => {
@@ -81,28 +134,7 @@ pub fn incidents(records: &[CrashRecord]) -> Vec<Incident> {
     for number in 0..reports.len() {
         groups.entry(sets.root(number)).or_default().push(number);
     }
-    let mut all: Vec<Incident> = groups.into_values().flat_map(|group| crashes(&reports, group)).collect();
-    all.sort_by(|one, other| one.id.cmp(&other.id));
-    all
-}
-
-fn report(record: &CrashRecord) -> IncidentReport {
-    let mut hash = Fnv::default();
-    hash.write_text(&record.narrative);
-    let telling = match record.redaction {
-        Redaction::Empty => Telling::Unreadable,
-        // A narrative that is withheld in parts may still tell its story.
-        Redaction::Redacted if readable(&record.narrative) < 120 => Telling::Unreadable,
-        _ if only_refers(&record.narrative) => Telling::Refers,
-        _ => Telling::Tells,
-    };
-    IncidentReport {
-        text_hash: hash.hexadecimal(),
-        telling,
-        names: report_ids(&record.narrative).filter(|id| *id != record.id.report_id).map(str::to_owned).collect(),
-        changed: Vec::new(),
-        record: record.clone(),
-    }
+    groups.into_values().flat_map(|group| crashes(reports, group)).collect()
 }
 
 /// Bytes outside of brackets.
@@ -149,7 +181,7 @@ fn report_ids(text: &str) -> impl Iterator<Item = &str> {
 }
 
 /// The crashes of one group of reports: one, or several where reports of one company under one id lie apart in time.
-fn crashes(reports: &[IncidentReport], group: Vec<usize>) -> Vec<Incident> {
+fn crashes(reports: &[Look], group: Vec<usize>) -> Vec<(String, Vec<usize>)> {
     let mut clusters: Vec<Vec<usize>> = Vec::new();
     for &number in &group {
         let near = clusters
@@ -160,7 +192,7 @@ fn crashes(reports: &[IncidentReport], group: Vec<usize>) -> Vec<Incident> {
             None => clusters.push(vec![number]),
         }
     }
-    let leader = &reports[group[0]].record;
+    let leader = reports[group[0]].record;
     let id = leader.incident_id.clone().unwrap_or_else(|| leader.id.report_id.clone());
     let several = clusters.len() > 1;
     clusters
@@ -168,13 +200,13 @@ fn crashes(reports: &[IncidentReport], group: Vec<usize>) -> Vec<Incident> {
         .enumerate()
         .map(|(place, cluster)| {
             let id = if several && place > 0 { format!("{id}#{}", place + 1) } else { id.clone() };
-            incident(reports, id, cluster)
+            (id, cluster)
         })
         .collect()
 }
 
-fn one_crash(one: &IncidentReport, other: &IncidentReport) -> bool {
-    let (a, b) = (&one.record, &other.record);
+fn one_crash(one: &Look, other: &Look) -> bool {
+    let (a, b) = (one.record, other.record);
     if a.id.report_id == b.id.report_id || a.entity != b.entity {
         return true;
     }
@@ -187,12 +219,12 @@ fn one_crash(one: &IncidentReport, other: &IncidentReport) -> bool {
     }
 }
 
-fn incident(reports: &[IncidentReport], id: String, mut group: Vec<usize>) -> Incident {
+fn incident(reports: &[Look], id: String, mut group: Vec<usize>) -> Incident {
     group.sort_by(|&one, &other| {
         let key = |number: usize| (&reports[number].record.id, number);
         key(one).cmp(&key(other))
     });
-    let mut all: Vec<IncidentReport> = group.iter().map(|&number| reports[number].clone()).collect();
+    let mut all: Vec<IncidentReport> = group.iter().map(|&number| reports[number].report()).collect();
     for at in 1..all.len() {
         let (before, after) = all.split_at_mut(at);
         let (before, after) = (&before[at - 1], &mut after[0]);

@@ -18,4 +18,4 @@ mod fold;
 mod incident;
 
 pub use fold::{account, refold};
-pub use incident::{incidents, only_refers};
+pub use incident::{incident_ids, incidents, only_refers};

@@ -44,10 +44,16 @@ pub struct RecordTable {
 /// Rows of a CSV table that are put together at once.
 const CHUNK: usize = 4096;
 
+/// Name of the column of the file's own *Same Incident ID*.
+const SAME_INCIDENT: &str = "same_incident_id";
+
 /// Records as a table: every field of `Field::ALL`, then the report's version and row, the template, whether the
 /// record is usable and, if not, why.
-pub fn record_table(set: &RecordSet, rows: TableRows) -> RecordTable {
-    let source = TableSource::new(set);
+///
+/// `incidents` has the incident of each record of the set, as accounts name it: reports are grouped by more than the file's
+/// *Same Incident ID*, which stands beside it.
+pub fn record_table(set: &RecordSet, incidents: &[Option<String>], rows: TableRows) -> RecordTable {
+    let source = TableSource::new(set, incidents);
     source.table(&source.shown(rows))
 }
 
@@ -57,8 +63,13 @@ pub fn record_table(set: &RecordSet, rows: TableRows) -> RecordTable {
 ///
 /// # Errors
 /// The sink cannot be written.
-pub fn write_csv(set: &RecordSet, rows: TableRows, sink: impl Write) -> std::io::Result<usize> {
-    let source = TableSource::new(set);
+pub fn write_csv(
+    set: &RecordSet,
+    incidents: &[Option<String>],
+    rows: TableRows,
+    sink: impl Write,
+) -> std::io::Result<usize> {
+    let source = TableSource::new(set, incidents);
     let shown = source.shown(rows);
     let mut writer = csv::Writer::from_writer(sink);
     source.table(&[]).write_header(&mut writer)?;
@@ -72,16 +83,17 @@ pub fn write_csv(set: &RecordSet, rows: TableRows, sink: impl Write) -> std::io:
 /// Records, and what a table tells about each beside its fields.
 struct TableSource<'a> {
     set: &'a RecordSet,
+    incidents: &'a [Option<String>],
     usable: Vec<bool>,
     rejects: BTreeMap<(&'a str, u64), &'a Reject>,
 }
 
 impl<'a> TableSource<'a> {
-    fn new(set: &'a RecordSet) -> Self {
+    fn new(set: &'a RecordSet, incidents: &'a [Option<String>]) -> Self {
         let mut usable = vec![false; set.records.len()];
         set.usable.iter().for_each(|&i| usable[i] = true);
         let rejects = set.rejects.iter().map(|r| ((r.file.as_str(), r.row), r)).collect();
-        Self { set, usable, rejects }
+        Self { set, incidents, usable, rejects }
     }
 
     /// Positions of the records that are shown.
@@ -101,6 +113,12 @@ impl<'a> TableSource<'a> {
             Field::ALL.into_iter().map(|field| (field.name(), column(field, records()))).collect();
         let whole = |number: u64| i64::try_from(number).ok();
         let lost = |&i: &usize| if self.usable[i] { None } else { self.reason(&self.set.records[i]) };
+        // The filter's field of this name is the file's id, as the row has it; a table goes by incidents.
+        if let Some(at) = columns.iter().position(|(name, _)| *name == Field::Incident.name()) {
+            columns[at].0 = SAME_INCIDENT;
+            let incidents = shown.iter().map(|&i| self.incidents.get(i).cloned().flatten()).collect();
+            columns.insert(at, (Field::Incident.name(), Column::Text(incidents)));
+        }
         columns.insert(1, ("version", Column::Whole(records().map(|r| Some(i64::from(r.id.version))).collect())));
         columns.extend([
             ("row", Column::Whole(records().map(|r| whole(r.provenance.row)).collect())),

@@ -13,7 +13,7 @@ use recrash_model::geometry::Vec2;
 use recrash_model::math;
 use recrash_model::surroundings::Surface;
 use recrash_model::vehicle::VehicleSpec;
-use recrash_plan::{Crossing, Manners};
+use recrash_plan::{Crossing, Manners, Traveller};
 
 /// Parameters of the model.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -127,16 +127,30 @@ impl Idm {
         for (gap_m, speed_mps) in in_the_way(scene, me) {
             keep_off(gap_m, speed_mps);
         }
+        self.give_way.count_standing(scene, me);
         let manners = Manners { gap_s: CROSSING_GAP_S };
-        if let Some(distance) = self.give_way.stop_line(scene, me, crossings, parameters.desired_speed_mps, manners) {
+        for (crossing, distance) in self.give_way.stop_lines(scene, me, crossings, parameters.desired_speed_mps, manners)
+        {
             // The line is for the bumper already; the usual room in front of it is not wanted twice.
-            keep_off(distance + 0.5 * parameters.minimum_gap_m, 0.0);
+            let waits = parameters.acceleration(seen.speed, Some((distance + 0.5 * parameters.minimum_gap_m, 0.0)));
+            let follows = lead(scene, me, crossing).map(|lead| parameters.acceleration(seen.speed, Some(lead)));
+            acceleration = acceleration.min(follows.map_or(waits, |follows| waits.max(follows)));
         }
         acceleration = acceleration.min(curve_limit(parameters, scene, me));
         acceleration = acceleration.max(-parameters.hardest_deceleration_mps2);
         let full = if acceleration >= 0.0 { self.full_throttle_mps2 } else { self.full_brake_mps2 };
         Controls { steer, throttle: acceleration / full.max(1e-3) }.clipped()
     }
+}
+
+/// Who is ahead where the two ways cross at a small angle, as if on the same way: bumper-to-bumper gap and speed.
+fn lead(scene: &Scene<'_>, me: usize, crossing: &Crossing) -> Option<(f64, f64)> {
+    let at = |actor: usize| Traveller { s_m: scene.path_s(actor), speed_mps: scene.actors[actor].speed };
+    let other = at(crossing.other);
+    let gap_m = crossing.lead(at(me), other)?
+        - scene.actors[me].half_length
+        - scene.actors[crossing.other].half_length;
+    (gap_m > 0.0).then_some((gap_m, other.speed_mps))
 }
 
 /// Everything in the strip of road that this actor is about to drive: bumper-to-bumper gap and speed along the way.

@@ -8,8 +8,8 @@ use clap::Args;
 use recrash_model::account::{Account, CrashType, Source, told};
 use recrash_model::incident::Incident;
 use recrash_pipeline::{
-    Accounts, Options, Output as File, PipelineError, TableFormat, read_accounts, record_outputs, told_facts,
-    write_accounts,
+    Accounts, Options, Output as File, PipelineError, TableFormat, read_accounts, record_outputs,
+    reported_columns, told_facts, write_accounts,
 };
 use serde_json::Value;
 use std::path::PathBuf;
@@ -74,7 +74,8 @@ pub fn run(args: &ReadArgs, output: Output) -> Result<(), PipelineError> {
     if let Some(id) = &args.report {
         return one(&read, id, output);
     }
-    let write = |(format, file): &(TableFormat, File)| write_accounts(&read.accounts, *format, file);
+    let columns = reported_columns(&read.incidents);
+    let write = |(format, file): &(TableFormat, File)| write_accounts(&read.accounts, &columns, *format, file);
     let written = tables.iter().map(write).collect::<Result<Vec<usize>, _>>()?;
     if output.json {
         output::json(&serde_json::json!({

@@ -41,7 +41,7 @@ pub struct ReconstructArgs {
     /// Show the reconstruction of the incident that this report is of, fact by fact.
     #[arg(long, value_name = "ID")]
     pub report: Option<String>,
-    /// Write the scenarios that show every checked fact into this folder.
+    /// Write the scenarios that show every checked fact into this folder, and a table of all incidents (`index.csv`).
     #[arg(long, value_name = "DIR")]
     pub to_dir: Option<PathBuf>,
 }
@@ -71,7 +71,7 @@ pub fn run(args: &ReconstructArgs, output: Output) -> Result<(), PipelineError> 
     let retold = reconstruct_accounts(&read.accounts, &*output.progress());
     let mut outputs = record_outputs(&options, None);
     let files = match &args.to_dir {
-        Some(folder) => write_reconstructions(&retold, folder, &mut outputs)?,
+        Some(folder) => write_reconstructions(&read.accounts, &retold, folder, &mut outputs)?,
         None => Vec::new(),
     };
     if output.json {
@@ -90,7 +90,7 @@ pub fn run(args: &ReconstructArgs, output: Output) -> Result<(), PipelineError> 
         fact_table(&fact_shares(&read.accounts, &retold));
     }
     if let Some(folder) = &args.to_dir {
-        println!("{} scenarios in {}", files.len(), folder.display());
+        println!("{} scenarios in {}, and index.csv: what became of each incident", files.len(), folder.display());
     }
     Ok(())
 }
@@ -104,6 +104,7 @@ fn json(read: &Accounts, retold: &[Retold]) -> serde_json::Value {
             "crash_type": told(&account.crash_type),
             "told": each.untold().is_none(),
             "reason": each.reason(),
+            "impact": each.impact(),
             "facts": each.result.as_ref().map_or(&[][..], |made| &made.verdict.checks),
             "assumed": each.result.as_ref().map_or(&[][..], |made| &made.assumed),
         })

@@ -3,6 +3,7 @@
 use crate::common::Place;
 use recrash_records::SAMPLE_CSV;
 use serde_json::Value;
+use std::collections::BTreeMap;
 
 /// A report id of the sample.
 fn some_report() -> String {
@@ -40,6 +41,13 @@ fn the_table_has_a_row_an_account() {
     let text = std::fs::read_to_string(place.path("a.csv")).unwrap();
     assert!(text.starts_with("incident,report,version,reports,crash_type,role,striker,"), "{text:.200}");
     assert_eq!(text.lines().count(), accounts + 1);
+    // What the columns of the speaking report say goes along.
+    let rows: Vec<BTreeMap<String, String>> =
+        csv::Reader::from_reader(text.as_bytes()).deserialize().map(|row| row.unwrap()).collect();
+    assert!(rows.iter().all(|row| !row["entity"].is_empty() && row["year"].parse::<u16>().is_ok()), "{:?}", rows[0]);
+    for name in ["sv_speed_mps", "posted_speed_mps", "severity"] {
+        assert!(rows.iter().any(|row| !row[name].is_empty()), "{name}");
+    }
 }
 
 #[test]

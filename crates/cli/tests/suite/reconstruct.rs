@@ -2,6 +2,8 @@
 
 use crate::common::{FEW, Place};
 use serde_json::Value;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
 
 #[test]
 fn shares_reasons_and_facts_are_shown_on_a_screen() {
@@ -57,8 +59,7 @@ fn what_is_written_shows_its_crash_and_takes_another_driver() {
     let place = Place::new();
     let (code, _, remarks) = place.run(&["reconstruct", "--records", FEW, "--to-dir", "scenes", "--quiet"]);
     assert_eq!(code, 0, "{remarks}");
-    let mut files: Vec<_> =
-        std::fs::read_dir(place.path("scenes")).unwrap().map(|entry| entry.unwrap().path()).collect();
+    let mut files = scenes(&place.path("scenes"));
     files.sort();
     assert!(files.len() > 30, "{}", files.len());
     for file in files.iter().step_by(8) {
@@ -67,6 +68,54 @@ fn what_is_written_shows_its_crash_and_takes_another_driver() {
             assert!([0, 5].contains(&code) && shown.contains("state hash"), "{ego}: {remarks}\n{shown}");
         }
     }
+}
+
+fn scenes(folder: &Path) -> Vec<PathBuf> {
+    let all = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    all.filter(|file| file.extension().is_some_and(|ending| ending == "json")).collect()
+}
+
+fn rows(file: &Path) -> Vec<BTreeMap<String, String>> {
+    csv::Reader::from_path(file).unwrap().deserialize().map(|row| row.unwrap()).collect()
+}
+
+#[test]
+fn an_index_says_what_became_of_each_incident_and_how_the_two_touch() {
+    let place = Place::new();
+    let (code, shown, errors) = place.run(&["reconstruct", "--records", FEW, "--to-dir", "scenes", "--json"]);
+    assert_eq!(code, 0, "{errors}");
+    let value: Value = serde_json::from_str(&shown).unwrap();
+    let index = rows(&place.path("scenes/index.csv"));
+    assert_eq!(index.len() as u64, value["accounts"].as_u64().unwrap());
+    let told = |row: &&BTreeMap<String, String>| row["standing"] == "shown";
+    assert_eq!(index.iter().filter(told).count(), scenes(&place.path("scenes")).len());
+    for row in &index {
+        let each = value["reconstructions"].as_array().unwrap().iter().find(|each| each["incident"] == row["incident"]);
+        let impact = &each.unwrap()["impact"];
+        assert_eq!(told(&row), place.path(&format!("scenes/{}.json", row["scenario"])).is_file(), "{row:?}");
+        for name in ["ego_impact_speed_mps", "other_impact_speed_mps", "delta_v_mps"] {
+            assert_eq!(row[name].parse().ok(), impact[name].as_f64(), "{name}: {row:?}");
+            assert_eq!(row[name].is_empty(), !told(&row), "{name}: {row:?}");
+        }
+    }
+    assert!(index.iter().any(|row| row["ego_impact_speed_mps"].parse::<f64>().is_ok_and(|speed| speed > 1.0)));
+}
+
+#[test]
+fn a_folder_may_be_filled_bit_by_bit_and_a_strangers_index_stays() {
+    let place = Place::new();
+    place.few_records(60);
+    let run = |more: &[&str]| {
+        place.run(&[&["reconstruct", "--records", "crashes.csv", "--quiet", "--to-dir", "scenes"], more].concat())
+    };
+    assert_eq!(run(&[]).0, 0);
+    let whole = std::fs::read(place.path("scenes/index.csv")).unwrap();
+    let report = rows(&place.path("scenes/index.csv"))[3]["report"].clone();
+    assert_eq!(run(&["--report", &report]).0, 0);
+    assert_eq!(std::fs::read(place.path("scenes/index.csv")).unwrap(), whole);
+    std::fs::write(place.path("scenes/index.csv"), "mine,too\n1,2\n").unwrap();
+    let (code, _, errors) = run(&[]);
+    assert!(code == 3 && errors.contains("index.csv is there and differs"), "{code}: {errors}");
 }
 
 #[test]
@@ -85,7 +134,7 @@ fn a_scenario_that_somebody_edited_is_not_replaced() {
     let write = || place.run(&[&few[..], &["scenes"]].concat());
     assert_eq!(write().0, 0);
     assert_eq!(write().0, 0, "the same again is no loss");
-    let edited = std::fs::read_dir(place.path("scenes")).unwrap().next().unwrap().unwrap().path();
+    let edited = scenes(&place.path("scenes")).remove(0);
     std::fs::write(&edited, "{}").unwrap();
     let (code, _, errors) = write();
     assert_eq!(code, 3, "{errors}");

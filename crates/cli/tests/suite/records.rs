@@ -71,6 +71,27 @@ fn tables_hold_the_usable_records_or_all() {
     assert!(error.contains("no/such/folder"), "{error}");
 }
 
+/// Accounts name an incident by the first of its reports, and so do records: also where the file's own ids differ, or are missing.
+#[test]
+fn records_and_accounts_are_joined_by_their_incident() {
+    let place = Place::new();
+    place.records(&["--csv", "records.csv", "--all"]);
+    assert_eq!(place.run(&["read", "--csv", "accounts.csv"]).0, 0);
+    let rows = |name: &str, columns: [&str; 3]| -> BTreeSet<[String; 3]> {
+        let mut table = csv::Reader::from_path(place.path(name)).unwrap();
+        let header = table.headers().unwrap().clone();
+        let at = columns.map(|column| header.iter().position(|other| other == column).unwrap());
+        table.records().map(|row| row.unwrap()).map(|row| at.map(|at| row[at].to_owned())).collect()
+    };
+    let (records, accounts) = (
+        rows("records.csv", ["incident", "report", "version"]),
+        rows("accounts.csv", ["incident", "report", "version"]),
+    );
+    assert!(accounts.len() > 300 && accounts.is_subset(&records), "{:?}", accounts.difference(&records).next());
+    let own = rows("records.csv", ["same_incident_id", "report", "version"]);
+    assert!(!accounts.is_subset(&own));
+}
+
 #[cfg(feature = "parquet")]
 #[test]
 fn a_parquet_table_is_one() {

@@ -9,12 +9,13 @@ use crate::reading::named;
 use recrash_model::Outcome;
 use recrash_model::incident::Incident;
 use recrash_model::profile::{Dedupe, RecordRules, SystemProfile, Tells};
-use recrash_model::record::{CrashRecord, RecordSet};
+use recrash_model::record::{CrashRecord, RecordSet, RejectReason};
 use recrash_records::{
-    Bytes, Filter, IngestOptions, MAX_MAPPING_BYTES, Mapping, SAMPLE_CSV, SAMPLE_NAME, SourceBytes, TableRows,
-    ingest_sources, write_csv,
+    Bytes, Filter, IngestOptions, MAX_MAPPING_BYTES, Mapping, RecordTable, SAMPLE_CSV, SAMPLE_NAME, SourceBytes,
+    TableRows, ingest_sources, write_csv,
 };
 use std::borrow::Cow;
+use std::collections::BTreeSet;
 use std::fs::File;
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
@@ -191,6 +192,27 @@ pub fn read_records(options: &Options) -> Result<Outcome<RecordSet>, PipelineErr
     RecordInput::read(options)?.ingest(&profile)
 }
 
+/// Records as a table, each with the incident that accounts know it by.
+pub fn record_table(records: &RecordSet, rows: TableRows) -> RecordTable {
+    recrash_records::record_table(records, &incidents_of_records(records), rows)
+}
+
+/// The incident of each record, under the id that [`incidents`] gives it; none of a row that says there was no crash.
+fn incidents_of_records(set: &RecordSet) -> Vec<Option<String>> {
+    let place = |file: &str, row: u64| (file.to_owned(), row);
+    let no_crash: BTreeSet<(String, u64)> = set
+        .rejects
+        .iter()
+        .filter(|reject| reject.reason == RejectReason::NotACrash)
+        .map(|reject| place(&reject.file, reject.row))
+        .collect();
+    let is_crash = |record: &&CrashRecord| {
+        no_crash.is_empty() || !no_crash.contains(&place(&record.provenance.file, record.provenance.row))
+    };
+    let mut ids = recrash_reader::incident_ids(set.records.iter().filter(is_crash)).into_iter();
+    set.records.iter().map(|record| if is_crash(&record) { ids.next() } else { None }).collect()
+}
+
 /// Writes records as a table. Gives the number of rows.
 ///
 /// # Errors
@@ -205,13 +227,13 @@ pub fn write_records(
         TableFormat::Csv => {
             let failed = |source| io("write", output.name(), source);
             let mut begun = output.begin()?;
-            let written = write_csv(records, rows, &mut begun).map_err(failed)?;
+            let written = write_csv(records, &incidents_of_records(records), rows, &mut begun).map_err(failed)?;
             begun.finish().map_err(failed)?;
             Ok(written)
         }
         #[cfg(feature = "parquet")]
         TableFormat::Parquet => {
-            let table = recrash_records::record_table(records, rows);
+            let table = record_table(records, rows);
             output.write(&table.to_parquet())?;
             Ok(table.rows)
         }

@@ -4,6 +4,7 @@ use crate::error::PipelineError;
 use crate::files::json::to_compact_json;
 use crate::files::store::sha256;
 use crate::models::cast::Reads;
+use crate::profiles::{DEFAULT_PROFILE, load_profile};
 use crate::progress::{Progress, ProgressEvent};
 use crate::reading::accounts::told_facts;
 use crate::reading::records;
@@ -17,6 +18,7 @@ use recrash_model::record::{CrashRecord, FunnelStep, Reading, RecordSet, Redacti
 use recrash_model::scenario::ScenarioDraft;
 use recrash_reconstruct::{Reconstruction, reconstruct, told_kinds};
 use recrash_records::Filter;
+use serde::Serialize;
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
 
@@ -67,6 +69,26 @@ impl Retold {
         }
     }
 
+    /// The scenario that tells its crash, where there is one.
+    pub fn shown(&self) -> Option<&Reconstruction> {
+        self.result.as_ref().ok().filter(|made| made.missed().is_none())
+    }
+
+    /// How the two touch in the scenario that tells its crash; nothing where there is none.
+    pub fn impact(&self) -> Option<Impact> {
+        let made = self.shown()?;
+        let scenario = recrash_roads::check(made.draft.clone()).ok()?.value;
+        let metrics = recrash_metrics::measure(&scenario, &made.rollout, &load_profile(DEFAULT_PROFILE).ok()?.failure);
+        let severity = recrash_metrics::severity_of(&made.rollout, &metrics)?;
+        Some(Impact {
+            ego_impact_speed_mps: severity.first.impact_speed_mps,
+            other_impact_speed_mps: severity.second.impact_speed_mps,
+            closing_speed_mps: severity.closing_speed_mps,
+            delta_v_mps: severity.first.delta_v_mps,
+            other_delta_v_mps: severity.second.delta_v_mps,
+        })
+    }
+
     /// Whether every told fact is checked, and shown.
     pub fn is_whole(&self) -> bool {
         self.result.as_ref().is_ok_and(|made| made.verdict.faithful() == Answer::Yes)
@@ -79,6 +101,21 @@ impl Retold {
             Err(reason) => Some(reason.label().to_owned()),
         }
     }
+}
+
+/// Numbers of the first contact of a reconstructed crash (`docs/models/severity.md`).
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Impact {
+    /// Speed of the ego at the contact. [m/s]
+    pub ego_impact_speed_mps: f64,
+    /// Speed of the other. [m/s]
+    pub other_impact_speed_mps: f64,
+    /// Magnitude of their relative velocity. [m/s]
+    pub closing_speed_mps: f64,
+    /// Change of the ego's velocity, by momentum. [m/s]
+    pub delta_v_mps: f64,
+    /// Change of the other's; 0 of what stands firm. [m/s]
+    pub other_delta_v_mps: f64,
 }
 
 /// Why the crash of an account is not told by its reconstruction; nothing where it is, or where it need not be yet and there is one.

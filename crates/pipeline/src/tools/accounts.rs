@@ -6,15 +6,23 @@ use crate::files::store::io;
 use crate::reading::accounts::coded;
 use crate::reading::records::TableFormat;
 use recrash_model::account::{Account, Fact, LeftRight, Origin, Party};
+use recrash_model::incident::Incident;
+use recrash_model::record::{Severity, YearMonth};
 use recrash_records::{Column, RecordTable};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 
 /// Writes accounts as a table of their main facts, a row an incident. Gives the number of rows.
 ///
 /// # Errors
 /// The file cannot be written.
-pub fn write_accounts(accounts: &[Account], format: TableFormat, output: &Output) -> Result<usize, PipelineError> {
-    let table = account_table(accounts);
+pub fn write_accounts(
+    accounts: &[Account],
+    columns: &ReportedColumns,
+    format: TableFormat,
+    output: &Output,
+) -> Result<usize, PipelineError> {
+    let table = account_table(accounts, columns);
     match format {
         TableFormat::Csv => {
             let failed = |source| io("write", output.name(), source);
@@ -28,8 +36,57 @@ pub fn write_accounts(accounts: &[Account], format: TableFormat, output: &Output
     Ok(table.rows)
 }
 
-/// Accounts as a table of their main facts, a row an incident.
-pub fn account_table(accounts: &[Account]) -> RecordTable {
+/// What the columns of the speaking reports say, by incident: what an account does not hold, since no word tells it.
+pub type ReportedColumns = BTreeMap<String, Reported>;
+
+/// What the columns of a report say beside its narrative.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Reported {
+    entity: String,
+    when: Option<YearMonth>,
+    sv_speed_mps: Option<f64>,
+    posted_speed_mps: Option<f64>,
+    severity: Option<Severity>,
+}
+
+/// The columns of the report that speaks for each incident.
+pub fn reported_columns(incidents: &[Incident]) -> ReportedColumns {
+    let of = |incident: &Incident| {
+        let record = &incident.spoken()?.record;
+        let reported = Reported {
+            entity: record.entity.clone(),
+            when: record.when,
+            sv_speed_mps: record.sv_speed_mps,
+            posted_speed_mps: record.posted_speed_mps,
+            severity: record.severity.known(),
+        };
+        Some((incident.id.clone(), reported))
+    };
+    incidents.iter().filter_map(of).collect()
+}
+
+/// Accounts as a table of their main facts, a row an incident. `docs/tables.md` has the columns.
+pub fn account_table(accounts: &[Account], columns: &ReportedColumns) -> RecordTable {
+    let reported = reported_cells(accounts, columns);
+    let columns = fact_columns(accounts).into_iter().chain(reported).collect();
+    RecordTable { columns, rows: accounts.len() }
+}
+
+fn reported_cells(accounts: &[Account], reported: &ReportedColumns) -> [(&'static str, Column); 6] {
+    let of = || accounts.iter().map(|account| reported.get(&account.incident));
+    let month = |part: fn(YearMonth) -> i64| Column::Whole(of().map(|each| each?.when.map(part)).collect());
+    [
+        ("entity", Column::Text(of().map(|each| Some(each?.entity.clone()).filter(|name| !name.is_empty())).collect())),
+        ("year", month(|when| i64::from(when.year))),
+        ("month", month(|when| i64::from(when.month))),
+        ("sv_speed_mps", Column::Number(of().map(|each| each?.sv_speed_mps).collect())),
+        ("posted_speed_mps", Column::Number(of().map(|each| each?.posted_speed_mps).collect())),
+        ("severity", Column::Text(of().map(|each| each?.severity.map(|harm| coded(&harm))).collect())),
+    ]
+}
+
+/// What narratives and columns together tell.
+fn fact_columns(accounts: &[Account]) -> Vec<(&'static str, Column)> {
     let text = |of: &dyn Fn(&Account) -> Option<String>| Column::Text(accounts.iter().map(of).collect());
     let partner = |of: &dyn Fn(&Party) -> Option<String>| -> Column {
         Column::Text(accounts.iter().map(|account| account.partner.as_ref().and_then(of)).collect())
@@ -37,7 +94,7 @@ pub fn account_table(accounts: &[Account]) -> RecordTable {
     let whole = |of: &dyn Fn(&Account) -> usize| {
         Column::Whole(accounts.iter().map(|account| i64::try_from(of(account)).ok()).collect())
     };
-    let columns = vec![
+    vec![
         ("incident", text(&|account| Some(account.incident.clone()))),
         ("report", text(&|account| Some(account.report.report_id.clone()))),
         ("version", whole(&|account| account.report.version as usize)),
@@ -63,8 +120,7 @@ pub fn account_table(accounts: &[Account]) -> RecordTable {
         ("others", whole(&|account| account.others.len())),
         ("contradictions", whole(&|account| account.contradictions.len())),
         ("words", whole(&|account| account.words as usize)),
-    ];
-    RecordTable { columns, rows: accounts.len() }
+    ]
 }
 
 fn name<T: Serialize>(fact: &Option<Fact<T>>) -> Option<String> {

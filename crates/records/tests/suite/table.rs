@@ -8,7 +8,7 @@ use recrash_records::{SAMPLE_CSV, SourceText, TableRows, distributions, ingest, 
 
 fn csv_of(set: &RecordSet, rows: TableRows) -> Vec<u8> {
     let mut csv = Vec::new();
-    write_csv(set, rows, &mut csv).unwrap();
+    write_csv(set, &[], rows, &mut csv).unwrap();
     csv
 }
 
@@ -51,6 +51,16 @@ fn a_csv_table_has_a_row_a_record_and_nothing_where_nothing_is_known() {
     assert_eq!((cell(1, "usable"), cell(1, "lost")), ("true".into(), String::new()));
     assert_eq!((cell(2, "road"), cell(2, "year"), cell(2, "surface")), (String::new(), String::new(), String::new()));
     assert_eq!((cell(2, "usable"), cell(2, "lost").as_str()), ("false".into(), "road type not expressible"));
+}
+
+#[test]
+fn an_incident_has_the_name_that_is_given_and_the_files_own_beside_it() {
+    let row = row(Edition::Second, "1-1", &[("Same Incident ID", "aa")]);
+    let set = ingest_bytes(second(&[row]).as_bytes()).value;
+    let table = recrash_records::record_table(&set, &[Some("bb".to_owned())], TableRows::All);
+    let column = |name: &str| table.columns.iter().find(|(other, _)| *other == name).unwrap().1.clone();
+    let text = |text: &str| recrash_records::Column::Text(vec![Some(text.to_owned())]);
+    assert_eq!((column("incident"), column("same_incident_id")), (text("bb"), text("aa")));
 }
 
 #[test]
@@ -97,7 +107,7 @@ mod parquet_files {
     #[test]
     fn a_parquet_table_reads_back_as_the_csv_table() {
         let set = ingest(&[SourceText { name: "sample.csv", bytes: SAMPLE_CSV.as_bytes() }], &paper()).unwrap().value;
-        let table = record_table(&set, TableRows::All);
+        let table = record_table(&set, &[], TableRows::All);
         let bytes = table.to_parquet();
         assert_eq!(bytes, table.to_parquet());
         let csv = cells(&csv_of(&set, TableRows::All));

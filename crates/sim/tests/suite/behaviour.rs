@@ -236,6 +236,27 @@ mod idm {
     }
 
     #[test]
+    fn follows_who_is_ahead_and_comes_across_its_lane_at_a_small_angle() {
+        // Faster than the ego from 20 m ahead: the gap opens, and the law asks for no braking.
+        let text = r#"{
+            "format": "recrash.scenario/2", "id": "across", "source": {"author": "person"},
+            "map": {"type": "G", "roads": [{"id": "main", "start": {"at": {"x_m": 0, "y_m": 0, "heading_deg": 0}},
+                "line": [{"straight": {"length_m": 400}}],
+                "right": [{"kind": "driving"}, {"kind": "driving"}], "left": [{"kind": "driving"}]}]},
+            "ego": {"route": ["main+"], "lane": 0, "s_m": 40, "speed_mps": 12, "target_speed_mps": 14},
+            "actors": [{"id": "cp", "plan": {
+                "start": {"x_m": 60, "y_m": -5.25, "heading_deg": 0}, "speed_mps": 15,
+                "course": [{"curve": {"to": {"x_m": 110, "y_m": -5.25}}},
+                    {"curve": {"to": {"x_m": 160, "y_m": -3.8, "heading_deg": 4}}},
+                    {"curve": {"to": {"x_m": 280, "y_m": 4.6, "heading_deg": 4}}}]}}],
+            "duration_s": 14
+        }"#;
+        let rollout = run(serde_json::from_str(text).expect("a draft"), Ego::Idm);
+        assert!(!touches(&rollout));
+        assert_eq!(brake_steps(&rollout), 0);
+    }
+
+    #[test]
     fn enters_a_roundabout_behind_who_is_on_it() {
         for tenths in -16..=20 {
             let mut draft = alone(roundabout(1), Turn::Straight, 0, 7.0, 7.0);

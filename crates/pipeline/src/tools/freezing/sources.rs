@@ -8,6 +8,7 @@ use crate::reading::documents::read_document;
 use crate::reading::scenarios::read_scenario;
 use crate::suite::Suite;
 use crate::suite::names;
+use crate::tools::reconstructing::indexed_types;
 use recrash_agents::expectation;
 use recrash_model::account::{Account, CrashType, told};
 use recrash_model::frozen::{About, FROZEN_FILE, FROZEN_FORMAT, FrozenSuite, Provenance};
@@ -96,8 +97,8 @@ fn of_suite(dir: &Path, tuned: bool, gathered: &mut Gathered) -> Result<(), Pipe
     Ok(())
 }
 
-/// Crash types of the scenarios that a folder holds, by their ids: of a frozen suite, or of one by accounts. What is no suite tells
-/// none, nor does a file of one that cannot be read: the scenarios are there without.
+/// Crash types of the scenarios that a folder holds, by their ids: of a frozen suite, of one by accounts, or of reconstructions with
+/// their index. Another folder tells none, nor does a file that cannot be read: the scenarios are there without.
 pub fn crash_types(folder: &Path) -> BTreeMap<String, CrashType> {
     let list = folder.join(FROZEN_FILE);
     if list.is_file() {
@@ -107,6 +108,9 @@ pub fn crash_types(folder: &Path) -> BTreeMap<String, CrashType> {
     }
     let store = Store::at(folder);
     let selection: Option<Selection> = store.read_json(names::SELECTION).ok();
+    if selection.is_none() {
+        return indexed_types(folder);
+    }
     let ids = selection.into_iter().flat_map(|selection| selection.clusters).map(|cluster| cluster.scenario_id);
     let of = |id: String| {
         let account: Account = store.read_json(&names::account(&id)).ok()?;
