@@ -130,6 +130,16 @@ const TOUCH_S: f64 = 0.025;
 /// By so much two boxes may come to overlap within a step without closing: by turning, or by rounding. [m]
 const SLACK_M: f64 = 0.01;
 
+/// The shadows of two boxes in a direction that leads from the one to the other.
+struct Touch {
+    normal: Vec2,
+    closing_mps: f64,
+    /// Since when they overlap. [s]
+    age_s: f64,
+    /// By how much they overlapped a physics step before. [m]
+    before_m: f64,
+}
+
 impl OrientedBox {
     /// The box of an actor of this size at this pose. Length and width in m.
     #[inline]
@@ -198,24 +208,21 @@ impl OrientedBox {
     /// which their shadows came to overlap last, by the velocity of this one less that of the other.
     ///
     /// Boxes that touch were apart one physics step before, so a direction whose shadows overlap for longer is none on which
-    /// they can have met. Where none is younger (turning alone brought the boxes together), it is the direction on which they
-    /// overlapped least a step before.
+    /// they can have met. Where none is younger (flanks that slide along each other, a turn that brought them together), it is
+    /// the direction on which they overlapped least a step before.
     pub fn contact_normal(&self, other: &Self, relative: Vec2) -> Vec2 {
         let apart = other.centre - self.centre;
         let touch = |direction: Vec2| {
             let normal = if apart.dot(direction) < 0.0 { -direction } else { direction };
             let depth_m = self.reach(normal) + other.reach(normal) - apart.dot(normal);
             let closing_mps = relative.dot(normal);
-            let before_m = depth_m - closing_mps * TOUCH_S;
-            // Flanks that slide along each other hardly close: their overlap is rounding, and as young as the step.
-            let age_s = depth_m / closing_mps.max(SLACK_M / TOUCH_S);
-            (normal, before_m, age_s)
+            Touch { normal, closing_mps, age_s: depth_m / closing_mps, before_m: depth_m - closing_mps * TOUCH_S }
         };
         let touches = [self.axis, self.axis.left(), other.axis, other.axis.left()].map(touch);
-        let young = touches.iter().filter(|&&(_, before_m, _)| before_m <= SLACK_M);
-        let last = young.min_by(|a, b| a.2.total_cmp(&b.2));
-        let last = last.or_else(|| touches.iter().min_by(|a, b| a.1.total_cmp(&b.1)));
-        last.map_or(self.axis, |&(normal, ..)| normal)
+        let young = touches.iter().filter(|touch| touch.closing_mps > 1e-6 && touch.before_m <= SLACK_M);
+        let last = young.min_by(|a, b| a.age_s.total_cmp(&b.age_s));
+        let last = last.or_else(|| touches.iter().min_by(|a, b| a.before_m.total_cmp(&b.before_m)));
+        last.map_or(self.axis, |touch| touch.normal)
     }
 
     /// The distance between the boxes, 0 when they touch or overlap. [m]

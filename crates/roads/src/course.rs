@@ -337,7 +337,8 @@ mod tests {
         let mut course = Course::begin(0.0);
         course.straight(pose(0.0, 0.0, 0.0), 10.0);
         course.stretch_of(&Stretch { start: pose(10.0, 0.0, 0.0), curvature: 0.1, length_m: 8.0 });
-        course.straight(course.end_pose().unwrap(), 10.0);
+        let end = course.spot(18.0);
+        course.straight(Pose { position: end.position, heading: end.heading }, 10.0);
         course.end_leg(false, true);
         for (t_m, on_bend_m) in [(3.0, 8.0 * 1.3), (-3.0, 8.0 * 0.7), (0.0, 8.0)] {
             let whole_m = 10.0 + on_bend_m + 10.0;
