@@ -96,7 +96,7 @@ def run_html(run: Run) -> str:
         "scenario": run.scenario_id,
         "ego": run.ego,
         "ended": f"{run.termination.replace('_', ' ')} after {run.duration_s:.1f} s",
-        "failed": "yes" if run.failed else "no",
+        "failed": {True: "yes", False: "no", None: "not tested"}[run.failed],
         "findings": "; ".join(finding["sentence"] for finding in run.findings),
         "change of velocity": None if change is None else f"{change:.1f} m/s",
     }

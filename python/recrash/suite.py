@@ -191,8 +191,8 @@ def sweep(
     """Run very many rollouts around scenarios, each with other numbers, on all cores. A row each, as ``docs/sweep.md`` has it.
 
     ``vary`` are numbers of the scenarios and their ranges (``"/partners/0/speed_mps=5:12"``); without it what a search for
-    failures would move. Rollout by rollout the scenarios take turns. A rollout is made of its number and the ``seed`` alone.
-    :func:`recrash.ray.sweep` does the same on a cluster.
+    failures would move. Rollout by rollout the scenarios take turns; those whose ego was parked are left out. A
+    rollout is made of its number and the ``seed`` alone. :func:`recrash.ray.sweep` does the same on a cluster.
     """
     points = _recrash.Points(load_scenarios(scenarios), list(vary), ego, profile, seed)
     ranges = [(begin, min(begin + SWEEP_CHUNK, rollouts)) for begin in range(0, rollouts, SWEEP_CHUNK)] or [(0, 0)]
@@ -213,8 +213,8 @@ def tune(
     """Search the nearest failure of an ego around each scenario: the tuned scenarios, and a row for each.
 
     ``budget`` is the number of points that are tried at most, ``searcher`` is ``cma`` or ``halton``. A scenario in which nothing
-    can vary stays as it is, with ``error`` saying so. Suites are tuned as they are made (:func:`run`), where the search also
-    keeps what their records tell.
+    can vary, or whose ego was parked, stays as it is, with ``error`` saying so. Suites are tuned as they are made (:func:`run`),
+    where the search also keeps what their records tell.
     """
     loaded = load_scenarios(scenarios)
     tuned: list[Scenario] = []

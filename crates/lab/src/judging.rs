@@ -8,7 +8,8 @@ use recrash_model::rollout::{Rollout, Substeps};
 use recrash_model::run::JudgedRun;
 use recrash_roads::{RunError, Scenario, Simulator};
 
-/// Runs a scenario and computes everything from its rollout.
+/// Runs a scenario and computes everything from its rollout. Where there is nothing to test, simulators let the recorded
+/// driver drive, and the run has no failure.
 ///
 /// # Errors
 /// The simulator failed; the native one cannot.
@@ -58,6 +59,7 @@ pub fn judge_by(scenario: &Scenario, rollout: Rollout, profile: &SystemProfile, 
     let cause = cause(scenario.network(), &rollout, &metrics, &found);
     let mut run = JudgedRun::new(rollout, metrics, found, severity, verdict);
     run.judgement.cause = cause;
+    run.judgement.parked = !scenario.draft().is_tested();
     run
 }
 

@@ -85,11 +85,13 @@ impl Metadrive {
         (&self.versions.0, &self.versions.1)
     }
 
-    /// Runs one scenario, waiting for a free worker first.
+    /// Runs one scenario, waiting for a free worker first. Where there is nothing to test, no policy takes over from the
+    /// recorded driver.
     ///
     /// # Errors
     /// When it failed on two workers, or no new worker can be started.
     pub fn simulate(&self, scenario: &Scenario, drive: &Drive) -> Result<Rollout, MetadriveError> {
+        let drive = if scenario.draft().is_tested() { drive } else { drive.of_nobody() };
         let refused = |why| MetadriveError::Refused { scenario: scenario.draft().id.clone(), why };
         let spec = run_spec(scenario, drive).map_err(refused)?;
         let first = match self.attempt(scenario, drive, &spec)? {

@@ -28,6 +28,14 @@ impl Drive {
     /// Policies of MetaDrive's own that can be a system under test.
     pub const POLICIES: [Self; 2] = [Self::MetadriveIdm, Self::MetadriveExpert];
 
+    /// Who drives where there is nothing to test: the recorded driver instead of a policy.
+    pub(crate) fn of_nobody(&self) -> &Self {
+        match self {
+            Self::OpenLoop(_) => self,
+            _ => &Self::Recorded,
+        }
+    }
+
     /// Its name.
     pub fn name(&self) -> &'static str {
         match self {

@@ -37,6 +37,9 @@ pub struct Judgement {
     pub simulator: String,
     /// Hash of all states of the rollout: two runs of one hash drove the same.
     pub state_hash: String,
+    /// Whether nobody was under test, as the ego was parked: the recorded driver drove, and fails nothing.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub parked: bool,
     /// What was measured.
     pub metrics: Metrics,
     /// What that says about the ego: failures first.
@@ -74,6 +77,7 @@ impl JudgedRun {
             ego: rollout.ego.clone(),
             simulator: rollout.simulator.clone(),
             state_hash: rollout.state_hash.clone(),
+            parked: false,
             metrics,
             findings,
             verdict,
@@ -129,14 +133,14 @@ impl Judgement {
         Some(check.result == CheckResult::Shown)
     }
 
-    /// The findings that are failures, by kind.
+    /// The findings that are failures of the ego, by kind; none where nobody was under test.
     pub fn failures(&self) -> impl Iterator<Item = FindingKind> {
-        self.findings.iter().map(|finding| finding.kind).filter(|kind| kind.is_failure())
+        self.findings.iter().map(|finding| finding.kind).filter(|kind| !self.parked && kind.is_failure())
     }
 
     /// Whether the ego failed, by the profile's criteria.
     pub fn failed(&self) -> bool {
-        self.findings.iter().any(|finding| finding.kind.is_failure())
+        self.failures().next().is_some()
     }
 
     /// Whether the ego brakes harder than tyres let a vehicle, anywhere.

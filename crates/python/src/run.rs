@@ -64,10 +64,10 @@ impl Run {
         self.run.rollout.termination.time_s
     }
 
-    /// Whether the ego failed, by the profile's criteria.
+    /// Whether the ego failed, by the profile's criteria; `None` where nobody was under test, as the ego was parked.
     #[getter]
-    fn failed(&self) -> bool {
-        self.run.failed()
+    fn failed(&self) -> Option<bool> {
+        (!self.run.parked).then(|| self.run.failed())
     }
 
     /// Whether it came into the situation of its record: as near as the recorded driver's crash asks; `None` where no recorded

@@ -117,7 +117,8 @@ impl Scenario {
 
     /// Runs it and judges the run. `ego` is a name, a command, or an object that drives; `simulator` is `native` or `metadrive`,
     /// `python` the interpreter that has MetaDrive (this one without). MetaDrive takes seconds to start: `recrash.test` starts it
-    /// once for many scenarios. The crash of a parked ego runs too, from its start: there is nothing to test in it (`tested`).
+    /// once for many scenarios. Of a record whose ego was parked (`tested` is false) the recorded driver drives, whoever is named, and
+    /// the run has neither `failed` nor `met`.
     #[pyo3(signature = (ego=None, *, seed=None, profile=None, simulator=None, python=None))]
     fn run(
         &self,

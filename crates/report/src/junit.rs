@@ -193,7 +193,9 @@ fn test_case(
             let failure = failure.with_attributes(attributes(&[("type", kind), ("message", &message)]));
             failure.write_text_content(BytesText::new(&sentences.join("\n")))?;
         }
-        writer.create_element("system-out").write_text_content(BytesText::new(&safe(&told(case, run, triage))))?;
+        writer
+            .create_element("system-out")
+            .write_text_content(BytesText::new(&safe(&told(suite, case, run, triage))))?;
         Ok(())
     })?;
     Ok(())
@@ -208,11 +210,13 @@ pub(crate) fn attributes<'a>(pairs: &[(&'a str, &str)]) -> Vec<Attribute<'a>> {
     pairs.iter().map(attribute).collect()
 }
 /// What a person reads when the test has failed.
-fn told(case: &CaseRow, run: &RunRow, triage: Option<&Triage>) -> String {
+fn told(suite: &SuiteView, case: &CaseRow, run: &RunRow, triage: Option<&Triage>) -> String {
     let gap = run
         .min_gap_m()
         .and_then(|gap| fixed(gap, 2))
         .map_or("no gap was measured".to_owned(), |gap| format!("{gap} m"));
+    let note = words::gap_note(run, suite.profile.failure.min_gap_m, case.account.is_some());
+    let gap = gap + &note.map_or_else(String::new, |note| format!(" ({note})"));
     let checked =
         |check: &Check| format!("{}: expected {}, observed {}", check.kind.label(), check.expected, check.observed);
     let listed = |answer: Answer, checks: Vec<&Check>| {

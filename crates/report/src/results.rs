@@ -9,7 +9,7 @@ use recrash_model::severity::Severity;
 use recrash_model::spreadsheet::inert;
 use recrash_model::triage::Triage;
 
-const HEADER: [&str; 59] = [
+const HEADER: [&str; 60] = [
     "scenario",
     "run",
     "road",
@@ -69,6 +69,7 @@ const HEADER: [&str; 59] = [
     "reviewed",
     "review_note",
     "restaged_because",
+    "min_gap_note",
 ];
 
 /// The table.
@@ -124,6 +125,9 @@ fn row(suite: &SuiteView, case: &CaseRow, name: &str, run: Option<&RunRow>) -> V
     row.push(review.map_or_else(String::new, |review| review.label().to_owned()));
     row.push(review.map_or_else(String::new, |review| review.note.clone()));
     row.push(case.changed.as_ref().map_or_else(String::new, |changed| changed.what.clone()));
+    let limit_m = suite.profile.failure.min_gap_m;
+    let note = run.and_then(|run| words::gap_note(run, limit_m, case.account.is_some()));
+    row.push(note.unwrap_or_default().to_owned());
     row
 }
 

@@ -9,14 +9,11 @@ use recrash_model::scenario::{Control, Device, ScenarioDraft};
 use recrash_roads::{LineKind, RoadDrawing};
 use serde_json::{Value, json};
 
-/// The driver who drives as recorded; the system under test takes over in the runs of all others.
-const RECORDED: &str = "recorded";
-
 /// Adds it to the data of a run of this scenario.
 pub fn on(mut trace: Value, draft: &ScenarioDraft, drawing: &RoadDrawing, run: &JudgedRun) -> Value {
     trace["signals"] = signals(&draft.control, drawing);
     trace["stops"] = stops(draft);
-    if let Some(handover_s) = draft.ego.handover_s.filter(|_| run.ego != RECORDED) {
+    if let Some(handover_s) = draft.ego.handover_s.filter(|_| run.ego != words::RECORDED) {
         trace["handover"] = short(handover_s, 3);
         let event = json!([short(handover_s, 3), "handover", format!("{} takes over", words::clean(&run.ego, 40))]);
         if let Value::Array(events) = &mut trace["events"] {

@@ -238,6 +238,8 @@ pub struct RunView {
 pub struct CaseContext<'a> {
     /// Ego that was run.
     pub ego: &'a str,
+    /// A box gap below this is a near miss, where somebody came nearer. [m]
+    pub min_gap_m: f64,
     /// The records that row and cluster name by position. Only those are read.
     pub records: &'a [CrashRecord],
     /// The cluster that the scenario stands for, where it does.
@@ -252,7 +254,12 @@ impl SuiteView {
 
     /// What the file of this case needs of the suite.
     pub fn context(&self, case: &CaseRow) -> CaseContext<'_> {
-        CaseContext { ego: &self.ego, records: &self.records.records, cluster: self.cluster(case) }
+        CaseContext {
+            ego: &self.ego,
+            min_gap_m: self.profile.failure.min_gap_m,
+            records: &self.records.records,
+            cluster: self.cluster(case),
+        }
     }
 
     /// The records a case shows, the pick first.

@@ -1,13 +1,18 @@
 //! From nouns to words and numbers to text, the same everywhere on the page.
 
 use crate::view::CaseRow;
+use recrash_model::metrics::FindingKind;
 use recrash_model::narrative::{FactSource, FactValue, Origin};
 use recrash_model::record::{Coded, MPS_PER_MPH, RecordRef};
+use recrash_model::run::Judgement;
 use recrash_model::template::Template;
 use recrash_model::zones::ContactZone;
 use serde::Serialize;
 use serde_json::Value;
 use std::borrow::Cow;
+
+/// The driver who drives as recorded; the system under test takes over in the runs of all others.
+pub const RECORDED: &str = "recorded";
 
 /// Longest text shown of one field of a record; the rest stays in the file. [characters]
 pub const LONGEST_TEXT: usize = 12_000;
@@ -166,6 +171,18 @@ pub fn template(template: &Template) -> String {
 /// Time of day from minutes after midnight.
 pub fn clock(minutes: u16) -> String {
     format!("{:02}:{:02}", minutes / 60 % 24, minutes % 60)
+}
+
+/// What is said beside a least gap below the limit of a near miss that is none: nobody came nearer than the scene, or the
+/// system's part of it, begins with.
+pub fn gap_note(run: &Judgement, limit_m: f64, by_account: bool) -> Option<&'static str> {
+    let near = run.metrics.min_gap.is_some_and(|gap| gap.value < limit_m);
+    let found = run.findings.iter().any(|finding| finding.kind == FindingKind::NearMiss);
+    let handed_over = by_account && run.ego != RECORDED;
+    (near && !found && run.metrics.contact.is_none()).then_some(match handed_over {
+        true => "stood so at the handover, not approached",
+        false => "stood so at the start, not approached",
+    })
 }
 
 /// Why the system under test was not run in a scenario that was not refused.

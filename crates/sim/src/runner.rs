@@ -28,15 +28,17 @@ impl Runner {
         Self { substeps, ..self }
     }
 
-    /// Runs a scenario. It cannot fail: however a run goes, it ends with a [`Termination`].
+    /// Runs a scenario. It cannot fail: however a run goes, it ends with a [`Termination`]. Where there is nothing to test,
+    /// the recorded driver drives, and is named.
     pub fn run<R: Recorder>(&mut self, scenario: &Scenario, ego: Ego, recorder: &mut R) -> Termination {
+        let ego = if scenario.draft().is_tested() { ego } else { Ego::Recorded };
         let run = self.begin(scenario, Seat::BuiltIn(ego));
         recorder.begin(scenario, ego.name(), run.cast());
         let Ok(termination) = finish(run, recorder, |_| Ok::<_, Infallible>(None));
         termination
     }
 
-    /// Runs a scenario with a driver from outside.
+    /// Runs a scenario with a driver from outside, who is not asked where there is nothing to test.
     ///
     /// # Errors
     /// The driver's own. What the recorder has of the run until then is not a whole one.
@@ -46,6 +48,9 @@ impl Runner {
         driver: &mut D,
         recorder: &mut R,
     ) -> Result<Termination, D::Error> {
+        if !scenario.draft().is_tested() {
+            return Ok(self.run(scenario, Ego::Recorded, recorder));
+        }
         let run = self.begin(scenario, Seat::Outside);
         driver.begin(scenario, run.cast())?;
         recorder.begin(scenario, driver.name(), run.cast());

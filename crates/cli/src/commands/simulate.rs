@@ -143,6 +143,7 @@ pub(super) fn show(result: &FileRun) {
     for finding in &run.findings {
         let struck = run.cause == Some(Cause::StruckStanding);
         let mark = match finding.kind.is_failure() {
+            true if run.parked => yellow("as recorded:"),
             true if struck => red("FAIL (struck while it stood, whatever it drove)"),
             true => red("FAIL"),
             false => yellow("odd "),

@@ -97,6 +97,15 @@ pub fn run(args: &SweepArgs, output: Output) -> Result<(), PipelineError> {
             ids.join(", ")
         );
     }
+    if !output.quiet && !sweep.parked().is_empty() {
+        let ids = sweep.parked();
+        eprintln!(
+            "  {} {} scenarios whose ego was parked are not swept, as there is nothing to test: {}",
+            yellow("warning"),
+            ids.len(),
+            ids.join(", ")
+        );
+    }
     let bar = bar(args.rollouts, output);
     let begun = Instant::now();
     let summary = sweep.run(&|done| bar.set_position(done))?;

@@ -217,3 +217,45 @@ fn an_account_that_somebody_spoiled_stops_its_case_alone_until_it_is_mended() {
     assert_eq!(code, 0, "{remarks}");
     assert!(cases(&place).iter().all(|case| case["failure"].is_null()), "{remarks}");
 }
+
+#[test]
+fn as_told_is_the_crash_as_reconstructed_and_its_row_says_how_to_run_it_again() {
+    let place = Place::made(&TOLD);
+    let hash = |file: &str| json(&place, &format!("suite/{file}"))["judgement"]["state_hash"].clone();
+    let table = std::fs::read(place.path("suite/results.csv")).unwrap();
+    let mut reader = csv::Reader::from_reader(&table[..]);
+    let header = reader.headers().unwrap().clone();
+    let mut told = [0; 2];
+    for row in reader.records().map(Result::unwrap) {
+        let cell = |name: &str| &row[header.iter().position(|column| column == name).unwrap()];
+        let (id, run) = (cell("scenario"), cell("run"));
+        let (kept, scenario) = match run {
+            "as told" => (format!("5-runs/{id}.recorded.json"), format!("4-scenarios/{id}.json")),
+            "as told, tuned" => (format!("7-tuned-runs/{id}.recorded.json"), format!("6-tuned/{id}.json")),
+            _ => continue,
+        };
+        told[usize::from(run != "as told")] += 1;
+        assert_eq!(hash(&kept), cell("state_hash"), "{run} of {id}");
+        assert!(cell("command").contains(&format!("simulate {scenario} ")), "{}", cell("command"));
+        let (_, again, _) = place.run(&["simulate", &format!("suite/{scenario}"), "--ego", "recorded", "--json"]);
+        let again: Value = serde_json::from_str(&again).unwrap();
+        assert_eq!(again["judgement"]["state_hash"], cell("state_hash"), "{run} of {id}");
+    }
+    assert!(told[0] == 12 && told[1] > 0, "{told:?}");
+}
+
+#[test]
+fn of_a_parked_ego_it_is_said_that_nobody_takes_over() {
+    let place = Place::made(&TOLD);
+    let tested = cases(&place).into_iter().find(|case| case["tuned"].is_object()).expect("there is one");
+    let mut scenario = json(&place, &format!("suite/4-scenarios/{}.json", tested["id"].as_str().unwrap()));
+    scenario["ego"].as_object_mut().unwrap().remove("handover_s").expect("it is tested");
+    std::fs::write(place.path("parked.json"), scenario.to_string()).unwrap();
+    let (code, run, _) = place.run(&["simulate", "parked.json", "--ego", "idm", "--json"]);
+    let run: Value = serde_json::from_str(&run).unwrap();
+    assert_eq!((code, &run["judgement"]["ego"], &run["judgement"]["parked"]), (0, &"recorded".into(), &true.into()));
+    let (_, shown, remarks) = place.run(&["simulate", "parked.json", "--ego", "idm"]);
+    assert!(remarks.contains("its ego was parked, so there is nothing to test") && !shown.contains("FAIL"), "{shown}");
+    let (code, _, errors) = place.run(&["sweep", "parked.json", "--out", "a.parquet", "-n", "2"]);
+    assert!(code == 3 && errors.contains("its ego was parked, so there is nothing to test"), "{code}: {errors}");
+}

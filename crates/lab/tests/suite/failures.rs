@@ -1,13 +1,14 @@
 //! Failures of random scenarios: what they need, how robust they are, and what a search for them aims at.
 
 use recrash_lab::minimal::{minimal, without_each};
-use recrash_lab::parity::random_scenario;
+use recrash_lab::parity::{random_scenario, random_scene};
 use recrash_lab::perturb::{Nudge, Who, nudged};
 use recrash_lab::robustness::{Robustness, robustness};
 use recrash_lab::{Scoring, judge, run_scenario, run_scenario_in, triage};
 use recrash_model::Seed;
 use recrash_model::geometry::OrientedBox;
 use recrash_model::metrics::{Finding, FindingKind};
+use recrash_model::narrative::Origin;
 use recrash_model::profile::SystemProfile;
 use recrash_model::rollout::{ActorState, Role, Substeps};
 use recrash_model::run::JudgedRun;
@@ -192,6 +193,28 @@ fn a_search_for_severity_takes_the_worse_contact_and_one_for_failures_does_not_a
     assert!((objective(Aim::Severity, 3.0) - objective(Aim::Severity, 9.0) - 6.0).abs() < 1e-9);
     // A contact of any harm is nearer to what is looked for than a gap.
     assert!(objective(Aim::Severity, 0.0) < 0.1);
+}
+
+#[test]
+fn who_was_parked_is_not_taken_over_from_and_fails_nothing() {
+    let profile = profile();
+    let mut crashes = 0;
+    for number in 0..60 {
+        let mut draft = random_scene(5, number).draft().clone();
+        if draft.ego.recorded.is_none() {
+            continue;
+        }
+        (draft.source.origin, draft.ego.handover_s) = (Some(Origin::Own), None);
+        let scenario = recrash_roads::check(draft).unwrap().value;
+        let run = |ego: Ego| run_scenario(&scenario, &Native::new(ego), &profile, None).unwrap();
+        let recorded = run(Ego::Recorded);
+        crashes += usize::from(recorded.finding_kinds().into_iter().any(FindingKind::is_failure));
+        assert!(recorded.parked && !recorded.failed() && recorded.failures().next().is_none());
+        for ego in Ego::DRIVERS {
+            assert_eq!(run(ego), recorded, "{}: nobody takes over", scenario.draft().id);
+        }
+    }
+    assert!(crashes > 0, "one of them crashes as recorded");
 }
 
 #[test]

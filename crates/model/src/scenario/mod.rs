@@ -80,8 +80,12 @@ pub struct ScenarioDraft {
     pub after_contact_s: f64,
 }
 
+/// Why a scenario in which nobody takes over is not tested.
+pub const NOTHING_TO_TEST: &str = "its ego was parked, so there is nothing to test";
+
 impl ScenarioDraft {
-    /// Whether there is something to test: of a record whose ego was parked nobody takes over.
+    /// Whether there is something to test: of a record whose ego was parked nobody takes over, and whoever is put into the
+    /// ego's seat, the recorded driver drives to the end.
     pub fn is_tested(&self) -> bool {
         self.source.origin.is_none() || self.ego.recorded.is_none() || self.ego.handover_s.is_some()
     }

@@ -9,9 +9,12 @@ use crate::reading::named;
 use crate::simulators::external::Patience;
 use crate::simulators::{SimulatorKind, start_simulator};
 use recrash_lab::{replay, run_scenario};
+use recrash_model::diagnostic::{Location, Severity};
 use recrash_model::run::JudgedRun;
+use recrash_model::scenario::NOTHING_TO_TEST;
 use recrash_model::{Diagnostic, Outcome};
 use recrash_roads::Scenario;
+use recrash_sim::Ego;
 use std::path::Path;
 
 /// Scenario files larger than this are refused. [bytes]
@@ -59,10 +62,14 @@ pub fn simulate_file(request: &FileRequest) -> Result<FileRun, PipelineError> {
     let rollout = request.rollout.map(|target| outputs.claim(target)).transpose()?;
     let picture = request.picture.map(|target| outputs.claim(target)).transpose()?;
     let profile = load_profile(request.profile)?;
-    let (scenario, diagnostics) = read_scenario(request.scenario)?;
+    let (scenario, mut diagnostics) = read_scenario(request.scenario)?;
     let ego = request.ego.unwrap_or(&profile.ego);
     let simulator = start_simulator(request.simulator, ego, request.python, 1, request.patience)?;
     let run = run_scenario(&scenario, &simulator, &profile, None)?;
+    if !scenario.draft().is_tested() && ego != Ego::Recorded.name() {
+        let message = format!("{NOTHING_TO_TEST}: the recorded driver drives, and not {ego}");
+        diagnostics.push(Diagnostic::new(Severity::Note, "scenario.parked", Location::default(), message));
+    }
     if let Some(rollout) = rollout {
         rollout.write(&to_compact_json(&run.rollout))?;
     }

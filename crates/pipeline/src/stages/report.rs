@@ -124,8 +124,12 @@ fn inputs(suite: &Suite, cases: &Cases, cluster: &Cluster) -> Result<Vec<String>
 fn case_files(suite: &Suite, cases: &Cases, position: usize, cluster: &Cluster) -> Result<Files, PipelineError> {
     let case = Case::read(suite, cases, cluster)?;
     let report = CaseReport { row: view::row(suite, cases, position, &case), summary: CaseSummary::of(&case) };
-    let context =
-        recrash_report::CaseContext { ego: suite.ego(), records: &cases.records.records, cluster: Some(cluster) };
+    let context = recrash_report::CaseContext {
+        ego: suite.ego(),
+        min_gap_m: suite.profile().failure.min_gap_m,
+        records: &cases.records.records,
+        cluster: Some(cluster),
+    };
     let page = recrash_report::case_file(&context, &view::case(suite, &case), &report.row);
     let id = &cluster.scenario_id;
     Ok(vec![(recrash_report::case_file_name(id), page.into_bytes()), (row_file(id), to_compact_json(&report))])

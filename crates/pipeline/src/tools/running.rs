@@ -29,9 +29,12 @@ pub fn run_many(
     Ok(thread_pool(threads)?.install(|| scenarios.par_iter().map(run).collect()))
 }
 
-/// Asks of a run whether it came into the situation of its record: that of the recorded driver's crash, where there is one.
+/// Asks of a run whether it came into the situation of its record: that of the recorded driver's crash, where there is one
+/// and somebody is tested.
 pub fn ask_for_situation(scenario: &Scenario, run: &mut JudgedRun, profile: &SystemProfile) {
-    if let Some(recorded) = recorded_crash(scenario, profile) {
+    if scenario.draft().is_tested()
+        && let Some(recorded) = recorded_crash(scenario, profile)
+    {
         let check = situation(run, &recorded);
         run.judgement.verdict.checks.push(check);
     }

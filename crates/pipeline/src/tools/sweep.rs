@@ -21,7 +21,7 @@ use recrash_model::Seed;
 use recrash_model::metrics::{Contact, PartnerMetrics, Timed};
 use recrash_model::profile::SystemProfile;
 use recrash_model::rollout::{Rollout, TerminationKind};
-use recrash_model::scenario::ScenarioDraft;
+use recrash_model::scenario::{NOTHING_TO_TEST, ScenarioDraft};
 use recrash_model::selection::Selection;
 use recrash_model::tuning::{Parameter, TuneLog, apply};
 use recrash_records::{Column, ParquetWriter};
@@ -107,6 +107,8 @@ pub struct SweepSummary {
     pub passed_over: Vec<String>,
     /// Scenarios that were not swept, because no number of theirs may move.
     pub fixed: Vec<String>,
+    /// Scenarios that were not swept, because their ego was parked and there is nothing to test.
+    pub parked: Vec<String>,
     /// The table.
     #[serde(serialize_with = "paths::as_text")]
     pub file: PathBuf,
@@ -132,6 +134,7 @@ pub struct Sweep {
     output: Output,
     passed_over: Vec<String>,
     fixed: Vec<String>,
+    parked: Vec<String>,
 }
 
 /// What varies in which scenarios: any rollout of a sweep is made of its number alone, wherever and in whatever order.
@@ -152,7 +155,8 @@ impl Sweep {
     /// Reads and checks what a sweep needs.
     ///
     /// # Errors
-    /// A file cannot be read or is no scenario, something varies that is no number of it, or nothing varies in any.
+    /// A file cannot be read or is no scenario, something varies that is no number of it, nothing varies in any, or there is
+    /// nothing to test in any.
     /// The file to write cannot be, or is one of those that are read.
     pub fn prepare(request: &SweepRequest) -> Result<Self, PipelineError> {
         let saved = if request.source.is_dir() { Suite::saved_options(request.source)? } else { None };
@@ -167,11 +171,13 @@ impl Sweep {
         let files = scenario_files(request.source)?;
         let bases = files.iter().map(|file| base(file, request.vary, &profile)).collect::<Result<Vec<_>, _>>()?;
         let passed_over = passed_over(request.source, &bases);
-        let (bases, fixed) = parted(bases, &request.source.display().to_string())?;
+        let name = request.source.display().to_string();
+        let (bases, parked) = tested(bases, &name)?;
+        let (bases, fixed) = parted(bases, &name)?;
         let points = SweepPoints::new(bases, profile, request.seed);
         let (rollouts, threads, patience) = (request.rollouts, request.threads, request.patience);
         let simulator = if drives_on_metadrive_alone(&ego) { SimulatorKind::Metadrive } else { SimulatorKind::Native };
-        Ok(Self { points, ego, simulator, patience, rollouts, threads, output, passed_over, fixed })
+        Ok(Self { points, ego, simulator, patience, rollouts, threads, output, passed_over, fixed, parked })
     }
 
     /// Ego that drives.
@@ -198,6 +204,11 @@ impl Sweep {
     /// Scenarios that are not swept, because no number of theirs may move.
     pub fn fixed(&self) -> &[String] {
         &self.fixed
+    }
+
+    /// Scenarios that are not swept, because there is nothing to test in them.
+    pub fn parked(&self) -> &[String] {
+        &self.parked
     }
 
     /// Writes the scenario of one rollout.
@@ -277,16 +288,18 @@ impl Sweep {
             scenarios: scenarios.collect(),
             passed_over: self.passed_over.clone(),
             fixed: self.fixed.clone(),
+            parked: self.parked.clone(),
             file: self.output.name().to_owned(),
         }
     }
 }
 
 impl SweepPoints {
-    /// Around scenarios that stand in no file: `vary` in each of them, or what a search would move where it is empty.
+    /// Around scenarios that stand in no file: `vary` in each of them, or what a search would move where it is empty. Those
+    /// with nothing to test are left out.
     ///
     /// # Errors
-    /// There is no scenario, what varies is no number of one, or nothing varies in any.
+    /// There is no scenario, what varies is no number of one, nothing varies in any, or there is nothing to test in any.
     pub fn around(
         scenarios: &[&Scenario],
         vary: &[Vary],
@@ -298,6 +311,7 @@ impl SweepPoints {
         }
         let base = |scenario: &&Scenario| based(scenario.draft(), vary, &scenario.draft().id, None, &profile);
         let bases = scenarios.iter().map(base).collect::<Result<Vec<_>, _>>()?;
+        let (bases, _) = tested(bases, "these scenarios")?;
         let (bases, _) = parted(bases, "these scenarios")?;
         Ok(Self::new(bases, profile, seed))
     }
@@ -542,6 +556,19 @@ fn based(
         None => movable(draft, profile),
     };
     Ok(Base { draft: draft.clone(), parameters })
+}
+
+/// The scenarios in which there is something to test, and the ids of the others.
+fn tested(bases: Vec<Base>, name: &str) -> Result<(Vec<Base>, Vec<String>), PipelineError> {
+    let (tested, parked): (Vec<Base>, Vec<Base>) = bases.into_iter().partition(|base| base.draft.is_tested());
+    let parked: Vec<String> = parked.into_iter().map(|base| base.draft.id).collect();
+    match &parked[..] {
+        [id] if tested.is_empty() => Err(PipelineError::bad_input(format!("{id}: {NOTHING_TO_TEST}"))),
+        [_, ..] if tested.is_empty() => {
+            Err(PipelineError::bad_input(format!("{name}: every ego was parked, so there is nothing to test")))
+        }
+        _ => Ok((tested, parked)),
+    }
 }
 
 /// The scenarios in which something varies, and the ids of the others.

@@ -8,7 +8,7 @@ use recrash_model::Seed;
 use recrash_model::narrative::{NARRATIVE_FORMAT, Narrative, Origin};
 use recrash_model::profile::SystemProfile;
 use recrash_model::run::JudgedRun;
-use recrash_model::scenario::{Author, ScenarioDraft};
+use recrash_model::scenario::{Author, NOTHING_TO_TEST, ScenarioDraft};
 use recrash_model::template::{Movement, RoadType, Template};
 use recrash_model::tuning::{Parameter, TuneLog, TunePoint, apply};
 use recrash_roads::{RunError, Scenario};
@@ -27,7 +27,7 @@ pub struct TunedScenario {
 /// Searches the nearest failure of an ego around a scenario. Same arguments, same result, wherever it is run.
 ///
 /// # Errors
-/// There is no such searcher, nothing varies in the scenario, or the ego cannot be run in it.
+/// There is no such searcher, there is nothing to test in the scenario, nothing varies in it, or the ego cannot be run in it.
 pub fn tune_scenario(
     scenario: &Scenario,
     simulator: &dyn Simulator,
@@ -39,6 +39,9 @@ pub fn tune_scenario(
     let options =
         TuneOptions { searcher: searcher.parse().map_err(|why: String| PipelineError::bad_input(why))?, budget };
     let draft = scenario.draft();
+    if !draft.is_tested() {
+        return Err(PipelineError::bad_input(format!("{}: {NOTHING_TO_TEST}", draft.id)));
+    }
     let parameters = movable(draft, profile);
     if parameters.is_empty() {
         return Err(PipelineError::bad_input(format!("nothing varies in {}, so there is nothing to search", draft.id)));

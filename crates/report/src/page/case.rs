@@ -39,7 +39,7 @@ fn inside(case: Case) -> Markup {
         }
         @if view.before.is_some() || view.after.is_some() {
             (stage(&modes(view), view.reference.is_some()))
-            (numbers(view))
+            (numbers(case))
             (severity::of_case(case))
         }
         .tabs {
@@ -212,7 +212,8 @@ fn uncapital(name: &str) -> String {
 }
 
 /// The few numbers everybody looks for, before and after; the recorded driver's in the crash as reconstructed alone.
-fn numbers(case: &CaseView) -> Markup {
+fn numbers(of: Case) -> Markup {
+    let case = of.view;
     let last = case.last_run();
     let worst = |run: &RunView, of: fn(&recrash_model::metrics::PartnerMetrics) -> Option<f64>, least: bool| {
         let values = run.metrics.partners.iter().filter_map(of).filter(|value| value.is_finite());
@@ -232,7 +233,9 @@ fn numbers(case: &CaseView) -> Markup {
     };
     let told_tuned = case.names().told_tuned;
     let names: Vec<&str> = case.runs().into_iter().map(|(name, _)| name).filter(|name| *name != told_tuned).collect();
+    let note = last.and_then(|run| words::gap_note(run, of.context.min_gap_m, case.account.is_some()));
     html! {
+        @if let Some(note) = note { p.muted.small { "Least gap of the last run: " (note) "." } }
         @if names.len() > 1 { p.muted.small { "Each value: " (names.join(" \u{2192} ")) "." } }
         dl.tiles.compact {
             (pair("Least gap", "m", 2, "nobody else and no thing took part", &|run: &RunView| run.min_gap_m()))

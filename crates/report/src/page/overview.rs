@@ -360,6 +360,7 @@ fn row(context: &Context, position: usize, case: &CaseRow) -> Markup {
                 @if last.is_none() { (missing(not_run)) } @else {
                     @if case.is_tuned() || case.account.is_none() { (metres(case.first_run())) } @else { b { (metres(last)) } }
                     @if let Some(after) = case.after.as_ref().filter(|_| case.is_tuned()) { " \u{2192} " b { (metres(Some(after))) } }
+                    @if let Some(note) = last.and_then(|run| words::gap_note(run, context.suite.profile.failure.min_gap_m, case.account.is_some())) { .muted { (note) } }
                 }
             }
             td.impact {

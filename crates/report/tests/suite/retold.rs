@@ -175,3 +175,20 @@ fn the_page_counts_the_runs_of_the_system_alone_and_both_of_them() {
     assert_eq!(page.matches(">found by tuning</span>").count(), 1);
     assert!(page.contains(">struck standing</span>"));
 }
+
+#[test]
+fn a_gap_that_nobody_came_nearer_to_is_told_so_beside_the_pass() {
+    let mut suite = retold();
+    let note = "stood so at the handover, not approached";
+    let limit_m = suite.profile.failure.min_gap_m;
+    let last = suite.cases[3].after.as_mut().unwrap();
+    last.judgement.metrics.contact = None;
+    last.judgement.metrics.min_gap = Some(recrash_model::metrics::Timed { value: 0.5 * limit_m, time_s: 4.0 });
+    assert!(!last.failed());
+    let told =
+        |suite: &SuiteView| [html(suite), junit(suite), results_csv(suite)].map(|text| text.matches(note).count());
+    assert_eq!(told(&suite), [1, 1, 1]);
+    let last = suite.cases[3].after.as_mut().unwrap();
+    last.judgement.metrics.min_gap.as_mut().unwrap().value = 2.0 * limit_m;
+    assert_eq!(told(&suite), [0, 0, 0]);
+}

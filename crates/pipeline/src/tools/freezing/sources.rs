@@ -14,6 +14,7 @@ use recrash_model::account::{Account, CrashType, told};
 use recrash_model::frozen::{About, FROZEN_FILE, FROZEN_FORMAT, FrozenSuite, Provenance};
 use recrash_model::narrative::Narrative;
 use recrash_model::record::{RecordRef, RecordSet};
+use recrash_model::scenario::NOTHING_TO_TEST;
 use recrash_model::selection::Selection;
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -136,7 +137,7 @@ impl Gathered {
         let draft = test.scenario.draft();
         match draft.is_tested() {
             true => self.tests.push(test),
-            false => self.left_out.push(format!("{}: its ego was parked, so there is nothing to test", draft.id)),
+            false => self.left_out.push(format!("{}: {NOTHING_TO_TEST}", draft.id)),
         }
     }
 }
