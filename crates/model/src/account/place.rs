@@ -50,6 +50,23 @@ pub enum PlaceKind {
     Other,
 }
 
+impl PlaceKind {
+    /// Whether it is a street, at a junction or not; a place of no other kind is taken for one.
+    pub const fn is_street(self) -> bool {
+        matches!(self, Self::Street | Self::Intersection | Self::Other)
+    }
+
+    /// Whether it has stalls and aisles.
+    pub const fn is_lot(self) -> bool {
+        matches!(self, Self::ParkingLot | Self::Garage)
+    }
+
+    /// Whether it lies off the streets, where all drive slowly.
+    pub const fn is_off_street(self) -> bool {
+        self.is_lot() || matches!(self, Self::Driveway | Self::Alley)
+    }
+}
+
 /// What a road has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]

@@ -24,7 +24,7 @@ pub(crate) fn ground_for(told: &Told) -> Ground {
             && !told.turns_round_in_street()
             && (!told.comes_off_drive() || told.crossed_near);
     // Aisles cross where somebody turns.
-    let lot = matches!(told.place, PlaceKind::ParkingLot | PlaceKind::Garage | PlaceKind::Driveway | PlaceKind::Alley)
+    let lot = told.place.is_off_street()
         && !turns(told.sv.turning)
         && !(turns(told.cp.turning) && crosses && told.comes_along_lanes());
     if (crossing || told.is_at_crossing()) && !lot || told.place == PlaceKind::Intersection {

@@ -9,7 +9,7 @@ use crate::told::crash::Told;
 use crate::told::others::Role;
 use crate::told::side::Turning;
 use crate::usual::LANE_M;
-use recrash_model::account::{ContactState, LeftRight, Origin, PlaceKind};
+use recrash_model::account::{ContactState, LeftRight, Origin};
 use recrash_model::scenario::{GraphMap, JunctionSpec, RoadSpec, RoadStart, Strip, StripKind};
 
 impl Told {
@@ -86,7 +86,7 @@ fn usual_strips(told: &Told, aisles: bool, at_kerb: bool) -> &'static [StripKind
 impl<'a> Drawn<'a> {
     /// What is drawn for an account.
     fn of(told: &'a Told, at_kerb: bool, one_way: bool) -> Self {
-        let lot = matches!(told.place, PlaceKind::ParkingLot | PlaceKind::Garage);
+        let lot = told.place.is_lot();
         let aisles = lot && told.layout.off_street.is_none();
         let arms = Arms::of(told, lanes_for(told, if aisles { 1 } else { 2 }));
         let usual = usual_strips(told, aisles, at_kerb);

@@ -74,7 +74,7 @@ impl<'a> Scene<'a> {
         let way_m: f64 = (0..self.until)
             .map(|step| self.ego.states[step].position().distance(self.ego.states[step + 1].position()))
             .sum();
-        let lot = matches!(self.told.place, PlaceKind::ParkingLot | PlaceKind::Garage | PlaceKind::Driveway);
+        let lot = self.told.place.is_lot() || self.told.place == PlaceKind::Driveway;
         let usual_mps = if lot { LOT_MPS } else { DRIVES_MPS };
         [(way_m / self.contact_s.max(1.0)).max(LOT_MPS), usual_mps]
     }

@@ -20,7 +20,7 @@ use crate::told::zones::side_of;
 use crate::touch::lanes;
 use crate::touch::staging::Staging;
 use crate::usual::STOOD_S;
-use recrash_model::account::{ContactState, LeftRight, Origin, PlaceKind, Striker};
+use recrash_model::account::{ContactState, LeftRight, Origin, Striker};
 use recrash_model::math;
 use recrash_model::scenario::Deed;
 use recrash_model::template::Movement;
@@ -269,7 +269,7 @@ fn cross_from_line(told: &Told, staging: &Staging) -> Option<Pace> {
 
 /// Who crosses a lot where no road crosses it sets off from among the stalls of its side.
 fn cross_from_stalls(told: &Told, staging: &Staging) -> Option<Pace> {
-    let lot = matches!(told.place, PlaceKind::ParkingLot | PlaceKind::Garage) && !staging.ground.junction;
+    let lot = told.place.is_lot() && !staging.ground.junction;
     let drives = told.comes_along_lanes() && told.cp.state == ContactState::Moving;
     // Who is told to pass comes along.
     let passes = told.cp.acts.iter().any(Doing::is_pass);

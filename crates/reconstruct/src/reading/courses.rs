@@ -10,7 +10,7 @@ use crate::told::side::{Side, Slant, Turning};
 use crate::told::zones::side_of;
 use recrash_model::account::{
     Account, Act, Act as Done, ActFact, ContactState, CrashType, KindGroup, LaneWord, LeftRight, Origin, Other, Party,
-    PlaceKind, SignalState, Source, Standing, Striker, told,
+    SignalState, Source, Standing, Striker, told,
 };
 use recrash_model::template::Movement;
 
@@ -67,7 +67,7 @@ impl Told {
                     false => (fact.act == Act::Turn).then(|| stood(fact)),
                 });
                 // Who backs into a stall of a lot swings round for it.
-                let lot = matches!(self.place, PlaceKind::ParkingLot | PlaceKind::Garage);
+                let lot = self.place.is_lot();
                 swings.or((lot && partner.did(Act::Park)).then_some(Slant::Swung))
             }
             _ => None,

@@ -43,7 +43,7 @@ pub(super) fn at_left_kerb(account: &Account, (origin, cp): (Origin, &Side), els
     let kind = partner.kind.iter().map(|fact| &fact.source);
     let told_way = partner.heading.is_some() || acts.chain(from).chain(kind).map(text).any(faces);
     let place = told(&account.place.kind).unwrap_or(PlaceKind::Street);
-    let street = matches!(place, PlaceKind::Street | PlaceKind::Intersection | PlaceKind::Other);
+    let street = place.is_street();
     let parked = cp.state == ContactState::Parked && cp.lane.is_none_or(|lane| lane == LaneWord::Curb);
     let there = origin == Origin::Opposite && street && parked && !elsewhere && !told_way;
     there.then_some(Origin::Parked { side: Some(LeftRight::Left) })
@@ -103,7 +103,7 @@ pub(super) fn movement_over(origin: Option<Origin>, partner: &Party) -> Option<M
 
 /// Whether the partner is told to have backed into a space at the kerb, ahead of the ego or behind it.
 pub(super) fn backs_in(partner: &Party, state: ContactState, origin: Origin, place: PlaceKind) -> bool {
-    let at_kerb = matches!(place, PlaceKind::Street | PlaceKind::Intersection | PlaceKind::Other);
+    let at_kerb = place.is_street();
     let along = matches!(origin, Origin::Ahead | Origin::Behind);
     at_kerb && along && state == ContactState::Reversing && partner.did(Act::Park)
 }

@@ -20,8 +20,8 @@ impl Lies {
     pub(super) fn of(thing: &Party, sv: &Side, place: PlaceKind) -> Option<Self> {
         let any =
             |words: &[&str]| words_of(&thing.kind).is_some_and(|text| words.iter().any(|word| text.contains(word)));
-        let turns_in = matches!(sv.turning, Turning::Left | Turning::Right)
-            || matches!(place, PlaceKind::ParkingLot | PlaceKind::Garage | PlaceKind::Driveway);
+        let turns_in =
+            matches!(sv.turning, Turning::Left | Turning::Right) || place.is_lot() || place == PlaceKind::Driveway;
         match told(&thing.kind)? {
             Kind::Curb | Kind::Pothole if any(&["speed bump", "speed hump", "speed table", "gate track"]) => {
                 Some(Self::Bump)

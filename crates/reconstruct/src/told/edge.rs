@@ -14,8 +14,7 @@ impl Told {
 
     /// What lies beside the outermost lane on the side where the partner stands.
     pub(crate) fn beside_edge(&self) -> Vec<StripKind> {
-        let lot =
-            matches!(self.place, PlaceKind::ParkingLot | PlaceKind::Garage | PlaceKind::Driveway | PlaceKind::Alley);
+        let lot = self.place.is_off_street();
         let parks = self.is_parked_along() || self.sv.movement == Some(Movement::ParkingManeuver) && !lot;
         match (parks, self.place) {
             (true, _) if self.diagonal => vec![StripKind::Stalls, StripKind::Sidewalk],
@@ -29,7 +28,7 @@ impl Told {
 
     /// Whether the edge is that of a median, which parts the two directions.
     pub(crate) fn edge_is_median(&self) -> bool {
-        let street = matches!(self.place, PlaceKind::Street | PlaceKind::Intersection | PlaceKind::Other);
+        let street = self.place.is_street();
         self.edge == Some(LeftRight::Left) && self.thing.is_some() && (street || self.sv.turning != Turning::No)
     }
 }

@@ -12,7 +12,7 @@ impl Told {
     pub(crate) fn is_at_kerb(&self) -> bool {
         let stands = self.thing.is_some() && self.cp.state.stands();
         let parked = self.sv.state == ContactState::Parked || self.sv.came_to_park;
-        let street = matches!(self.place, PlaceKind::Street | PlaceKind::Intersection | PlaceKind::Other);
+        let street = self.place.is_street();
         let there = (parked || self.stops_at_kerb()) && !self.is_in_lane(true);
         street && (there || self.is_partly_in_lane(true)) && !stands
     }
@@ -31,7 +31,7 @@ impl Told {
     /// Whether one that stands is told to do so beside the lanes of a street: parked, or at the kerb.
     pub(crate) fn stands_beside(&self, of_ego: bool) -> bool {
         let (side, told) = if of_ego { (&self.sv, self.layout.sv) } else { (&self.cp, self.layout.cp) };
-        let street = matches!(self.place, PlaceKind::Street | PlaceKind::Intersection | PlaceKind::Other);
+        let street = self.place.is_street();
         let parked = side.state == ContactState::Parked || side.came_to_park || side.state.stands() && told.at_kerb;
         street
             && parked
@@ -137,7 +137,7 @@ impl Told {
     /// Whether the partner comes out of a space where others park: at the kerb of a street, or in a stall beside it.
     pub(crate) fn leaves_space(&self) -> bool {
         let space = matches!(self.origin, Origin::Parked { .. } | Origin::Stall { .. });
-        let street = matches!(self.place, PlaceKind::Street | PlaceKind::Intersection | PlaceKind::Other);
+        let street = self.place.is_street();
         space && street && self.cp.state != ContactState::Stopped && !self.is_in_lane(false) && self.thing.is_none()
     }
 

@@ -221,10 +221,7 @@ impl Told {
             Turning::Round => false,
         };
         let drives = (self.cp.state == ContactState::Moving || backs) && until_then;
-        let street = !matches!(
-            self.place,
-            PlaceKind::Highway | PlaceKind::ParkingLot | PlaceKind::Garage | PlaceKind::Driveway | PlaceKind::Alley
-        );
+        let street = self.place != PlaceKind::Highway && !self.place.is_off_street();
         along && !over && drives && street && self.cp.lane != Some(LaneWord::Opposing) && self.thing.is_none()
     }
 

@@ -58,7 +58,7 @@ impl Told {
     fn driven_mps(&self) -> f64 {
         let usual_mps = match self.place {
             PlaceKind::Highway => 27.0,
-            PlaceKind::ParkingLot | PlaceKind::Garage | PlaceKind::Driveway | PlaceKind::Alley => 5.0,
+            place if place.is_off_street() => 5.0,
             _ => 11.2,
         };
         // In a turn nobody drives at the posted speed.
@@ -171,19 +171,14 @@ impl Told {
         }
     }
 
-    /// Whether all drive slowly there.
-    const fn is_in_lot(&self) -> bool {
-        matches!(self.place, PlaceKind::ParkingLot | PlaceKind::Garage | PlaceKind::Driveway)
-    }
-
-    /// The same or less, where all drive slowly. [m/s]
+    /// The same or less, where stalls or a gate are near; an alley is driven along. [m/s]
     fn fit_mps(&self, mps: f64) -> f64 {
-        if self.is_in_lot() { mps.min(3.0) } else { mps }
+        if self.place.is_lot() || self.place == PlaceKind::Driveway { mps.min(3.0) } else { mps }
     }
 
     /// The usual speed of one of the two, as far as words tell how fast it drove. [m/s]
     fn usual_as_told_mps(&self, side: &Side) -> f64 {
-        as_told(side.manner, self.fit_mps(self.usual_mps(side)), self.is_in_lot(), self.posted_mps)
+        as_told(side.manner, self.fit_mps(self.usual_mps(side)), self.place.is_off_street(), self.posted_mps)
     }
 
     /// The ego's speed. [m/s]
@@ -283,7 +278,7 @@ impl Told {
     }
 }
 
-/// Who is told to be slow is no faster than this: in a lot, a garage or a driveway, and elsewhere. [m/s]
+/// Who is told to be slow is no faster than this: in a lot, a garage, a driveway or an alley, and elsewhere. [m/s]
 pub(crate) const SLOWLY_MPS: (f64, f64) = (2.0, 2.8);
 
 /// Who is told to be fast drives so many times as fast as is posted, or as is usual where nothing is, and faster by so much at most.
@@ -306,8 +301,8 @@ fn fast_mps(side: &Side) -> Option<f64> {
 }
 
 /// A usual speed at the contact, as far as words tell how fast somebody drove.
-fn as_told(manner: Option<Manner>, usual_mps: f64, in_lot: bool, posted_mps: Option<f64>) -> f64 {
-    let of = |(lot, road): (f64, f64)| if in_lot { lot } else { road };
+fn as_told(manner: Option<Manner>, usual_mps: f64, off_street: bool, posted_mps: Option<f64>) -> f64 {
+    let of = |(lot, road): (f64, f64)| if off_street { lot } else { road };
     match manner {
         None => usual_mps,
         Some(Manner::Slow) => usual_mps.min(of(SLOWLY_MPS)),

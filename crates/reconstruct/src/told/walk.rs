@@ -2,7 +2,7 @@
 
 use crate::told::crash::Told;
 use crate::told::side::{Turning, size_of};
-use recrash_model::account::{ContactState, LeftRight, Origin, PlaceKind};
+use recrash_model::account::{ContactState, LeftRight, Origin};
 use recrash_model::kinds::PartnerKind;
 use recrash_model::zones::ContactZone;
 
@@ -15,7 +15,7 @@ impl Told {
             _ => false,
         };
         let moves = matches!(self.cp.state, ContactState::Moving | ContactState::SettingOff);
-        let street = matches!(self.place, PlaceKind::Street | PlaceKind::Intersection | PlaceKind::Other);
+        let street = self.place.is_street();
         walks && moves && street && matches!(self.origin, Origin::Cross { .. }) && self.edge.is_none()
     }
 

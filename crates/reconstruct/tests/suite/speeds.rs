@@ -153,3 +153,14 @@ fn an_order_that_is_not_shown_says_by_how_much_it_has_to_be() {
     let order = held.checks.iter().find(|check| check.kind == CheckKind::Order).unwrap();
     assert_eq!(order.expected, "the partner, by more than 0.10 s");
 }
+
+const FAST_IN_AN_ALLEY: &str = "The AV was stopped in an alley. A van approached from behind at a high rate of speed and the front of the van made contact with the \
+                                rear of the AV.";
+
+#[test]
+fn who_is_fast_in_an_alley_is_not_as_fast_as_on_a_street() {
+    let speed = |text: &str| partner(&made(&story(text))).1.speed();
+    let (alley, lot) = (speed(FAST_IN_AN_ALLEY), speed(&FAST_IN_AN_ALLEY.replace("an alley", "a parking lot")));
+    let street = speed(&FAST_IN_AN_ALLEY.replace("in an alley", "on Elm Street"));
+    assert!(alley < 8.0 && (alley - lot).abs() < 0.5 && street > 12.0, "{alley} {lot} {street}");
+}
