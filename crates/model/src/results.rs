@@ -29,8 +29,21 @@ pub struct TestResults {
     pub simulator: String,
     /// How often each test was run.
     pub seeds: u32,
+    /// That the ego does not repeat, where it is a program and one test was run again to see that; absent where it drove the same.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub unrepeated: Option<Unrepeated>,
     /// By id.
     pub tests: Vec<TestResult>,
+}
+
+/// A test that an ego drove otherwise when it was run again, with the same seed: what it fails once it may pass the next time.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Unrepeated {
+    /// The test.
+    pub test: String,
+    /// What came of the second run.
+    pub why: String,
 }
 
 /// What an ego did in one test.

@@ -24,6 +24,15 @@ fn is_number(text: &str) -> bool {
         && text.parse::<f64>().is_ok()
 }
 
+/// A text without what a terminal obeys or turns round when a table is looked at there: control characters but line breaks and tabs,
+/// and marks of direction. Each becomes one replacement character.
+pub fn visible(text: &str) -> Cow<'_, str> {
+    let turns =
+        |c: char| matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+    let odd = |c: char| turns(c) || c.is_control() && !matches!(c, '\n' | '\r' | '\t');
+    if text.contains(odd) { Cow::Owned(text.replace(odd, "\u{fffd}")) } else { Cow::Borrowed(text) }
+}
+
 /// A text as a cell of a CSV table.
 pub fn inert(text: &str) -> Cow<'_, str> {
     if is_formula(text) { Cow::Owned(format!("{MARK}{text}")) } else { Cow::Borrowed(text) }
@@ -40,6 +49,12 @@ pub fn original(cell: &str) -> &str {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_a_terminal_obeys_is_not_in_a_cell() {
+        assert_eq!(visible("a\u{1b}[31m\u{202e}b\u{7f}\tc\nd"), "a\u{fffd}[31m\u{fffd}b\u{fffd}\tc\nd");
+        assert!(matches!(visible("plain \u{e9}"), Cow::Borrowed(_)));
+    }
 
     #[test]
     fn formulas_become_text_and_everything_comes_back() {

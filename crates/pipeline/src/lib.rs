@@ -32,7 +32,7 @@ pub use models::cast::{AgentLog, Cast, RULES, Reads};
 pub use models::ledger::{LedgerReport, ModelSum, Sum as LedgerSum, ledger};
 pub use models::{AnswerMode, ModelAccess};
 pub use options::{Options, RecordSource};
-pub use profiles::{PROFILE_NAMES, load_profile};
+pub use profiles::{PROFILE_NAMES, load_profile, profile_text};
 pub use progress::{NoProgress, Progress, ProgressEvent};
 pub use reading::accounts::{Accounts, ToldFact, read_accounts, told_facts};
 pub use reading::fetching::{CrashKind, FetchRequest, Fetched, PublishedEdition, fetch};

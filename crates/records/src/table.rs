@@ -2,7 +2,7 @@
 
 use crate::fields::{Field, FieldValue};
 use recrash_model::record::{CrashRecord, RecordSet, Reject};
-use recrash_model::spreadsheet::inert;
+use recrash_model::spreadsheet::{inert, visible};
 use std::collections::BTreeMap;
 use std::io::Write;
 
@@ -59,7 +59,7 @@ pub fn record_table(set: &RecordSet, incidents: &[Option<String>], rows: TableRo
 
 /// Writes [`record_table`] as CSV, with a few thousand rows in memory: a header, commas, quotes where needed, UTF-8, a line
 /// feed behind each row; `true` and `false`, and nothing where a value is missing. Texts that a spreadsheet would run as
-/// formulas are made inert ([`recrash_model::spreadsheet`]). Gives the number of rows.
+/// formulas are made inert, and characters that a terminal obeys are replaced ([`recrash_model::spreadsheet`]). Gives the number of rows.
 ///
 /// # Errors
 /// The sink cannot be written.
@@ -185,7 +185,7 @@ impl Column {
             values.get(row).and_then(Option::as_ref).map(T::to_string).unwrap_or_default()
         }
         match self {
-            Self::Text(values) => inert(&text(values, row)).into_owned(),
+            Self::Text(values) => inert(&visible(&text(values, row))).into_owned(),
             Self::Whole(values) => text(values, row),
             Self::Number(values) => text(values, row),
             Self::Flag(values) => text(values, row),

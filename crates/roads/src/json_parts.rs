@@ -5,6 +5,7 @@ use recrash_model::Diagnostic;
 use recrash_model::scenario::Policy;
 use serde::de::DeserializeOwned;
 use serde_json::{Map, Value};
+use serde_path_to_error::{Path, Segment};
 
 /// What was read so far.
 #[derive(Default)]
@@ -23,7 +24,18 @@ impl Parts {
             Ok(read) => Some(read),
             Err(error) => {
                 let inner = error.path().to_string();
+                let keys = if is_about_keys(error.inner()) { keys_at::<T>(value, error.path()) } else { Vec::new() };
                 let message = error.into_inner().to_string();
+                if !keys.is_empty() {
+                    let message = format!("it is an object with one key, which is one of {}", keys.join(", "));
+                    self.error(
+                        "scenario.type",
+                        &join(path, &inner),
+                        message,
+                        "`recrash schema` prints what each holds",
+                    );
+                    return None;
+                }
                 self.type_error(&join(path, if inner == "." { "" } else { &inner }), &message);
                 None
             }
@@ -62,6 +74,34 @@ impl Parts {
         };
         self.error("scenario.unknown-field", path, format!("unknown field `{shown}`"), hint);
     }
+}
+
+/// Whether an object was given where one with a single key is wanted: serde names none of the keys.
+fn is_about_keys(error: &serde_json::Error) -> bool {
+    error.to_string().contains("expected map with a single key")
+}
+
+/// The keys that an object with a single key may have at this place of a document.
+fn keys_at<T: DeserializeOwned>(value: &Value, path: &Path) -> Vec<String> {
+    let mut asked = value.clone();
+    let mut place = &mut asked;
+    for segment in path {
+        let inner = match segment {
+            Segment::Seq { index } => place.get_mut(*index),
+            Segment::Map { key } => place.get_mut(key),
+            Segment::Enum { variant } => place.get_mut(variant),
+            Segment::Unknown => None,
+        };
+        match inner {
+            Some(inner) => place = inner,
+            None => return Vec::new(),
+        }
+    }
+    // No type has such a key: the answer lists those that there are.
+    *place = serde_json::json!({ "?": null });
+    let told = serde_json::from_value::<T>(asked).err().map(|error| error.to_string()).unwrap_or_default();
+    let listed = told.strip_prefix("unknown variant `?`, expected ").unwrap_or_default();
+    listed.split('`').skip(1).step_by(2).map(str::to_owned).collect()
 }
 
 fn join(path: &str, inner: &str) -> String {

@@ -12,7 +12,7 @@ pub(crate) fn near_names(found: &str, known: &[&str]) -> String {
 }
 
 /// The known name that was probably meant.
-pub(crate) fn nearest<'a>(found: &str, known: &[&'a str]) -> Option<&'a str> {
+pub fn nearest<'a>(found: &str, known: &[&'a str]) -> Option<&'a str> {
     let found: String = found.chars().take(40).collect();
     known
         .iter()

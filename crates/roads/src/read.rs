@@ -197,15 +197,49 @@ fn list<T>(
 
 /// The map: by hand, because serde forgets the path inside a tagged enum.
 fn map(value: &Value, parts: &mut Parts) -> Option<MapSpec> {
-    let (kind, fields) = tagged(value, "map", &["S", "C", "X", "T", "O", "G"], MAP_HINT, parts)?;
+    let (kind, fields) = tagged(value, "map", &MAP_TYPES, MAP_HINT, parts)?;
+    let before = parts.diagnostics.len();
+    let stray: Vec<String> = fields.keys().filter(|field| !knows(&kind, field)).cloned().collect();
     let fields = Value::Object(fields);
-    match kind.as_str() {
-        "S" => parts.read::<StraightMap>(&fields, "map").map(MapSpec::S),
-        "C" => parts.read::<CurveMap>(&fields, "map").map(MapSpec::C),
-        "X" => parts.read::<CrossMap>(&fields, "map").map(MapSpec::X),
-        "T" => parts.read::<TeeMap>(&fields, "map").map(MapSpec::T),
-        "O" => parts.read::<RoundaboutMap>(&fields, "map").map(MapSpec::O),
-        _ => parts.read::<GraphMap>(&fields, "map").map(MapSpec::G),
+    let map = map_of(&kind, &fields, parts);
+    for told in parts.diagnostics[before..].iter_mut().filter(|told| told.code == "scenario.unknown-field") {
+        let field = stray.iter().find(|field| told.location.path.as_deref() == Some(&format!("map.{field}")));
+        let types =
+            field.map_or_else(Vec::new, |field| MAP_TYPES.into_iter().filter(|kind| knows(kind, field)).collect());
+        if !types.is_empty() {
+            let types = types.join(", ");
+            told.hint = format!("a map of type {types} has that field, and this one is of type {kind}; {}", told.hint);
+        }
+    }
+    map
+}
+
+const MAP_TYPES: [&str; 6] = ["S", "C", "X", "T", "O", "G"];
+
+/// Whether a type of map has a field.
+fn knows(kind: &str, field: &str) -> bool {
+    fn has<T: DeserializeOwned>(field: &str) -> bool {
+        let fields = Value::Object([(field.to_owned(), Value::Null)].into_iter().collect());
+        serde_json::from_value::<T>(fields).err().is_none_or(|error| !error.to_string().starts_with("unknown field"))
+    }
+    match kind {
+        "S" => has::<StraightMap>(field),
+        "C" => has::<CurveMap>(field),
+        "X" => has::<CrossMap>(field),
+        "T" => has::<TeeMap>(field),
+        "O" => has::<RoundaboutMap>(field),
+        _ => has::<GraphMap>(field),
+    }
+}
+
+fn map_of(kind: &str, fields: &Value, parts: &mut Parts) -> Option<MapSpec> {
+    match kind {
+        "S" => parts.read::<StraightMap>(fields, "map").map(MapSpec::S),
+        "C" => parts.read::<CurveMap>(fields, "map").map(MapSpec::C),
+        "X" => parts.read::<CrossMap>(fields, "map").map(MapSpec::X),
+        "T" => parts.read::<TeeMap>(fields, "map").map(MapSpec::T),
+        "O" => parts.read::<RoundaboutMap>(fields, "map").map(MapSpec::O),
+        _ => parts.read::<GraphMap>(fields, "map").map(MapSpec::G),
     }
 }
 

@@ -25,6 +25,11 @@ pub trait Simulator: Send + Sync {
     /// There is no rollout, and why. Whatever happens inside a run (a contact, a road left) is no error but data.
     fn run(&self, scenario: &Scenario) -> Result<Rollout, RunError>;
 
+    /// How long the system under test has taken for its answers so far, where it is a program. No rollout depends on it.
+    fn answer_times(&self) -> Option<AnswerTimes> {
+        None
+    }
+
     /// Runs a scenario with another physics step; decisions stay at every 0.1 s. `None` where the simulator has one only.
     fn run_in(&self, _scenario: &Scenario, _substeps: Substeps) -> Option<Result<Rollout, RunError>> {
         None
@@ -48,9 +53,24 @@ impl<S: Simulator + ?Sized> Simulator for Box<S> {
         (**self).run(scenario)
     }
 
+    fn answer_times(&self) -> Option<AnswerTimes> {
+        (**self).answer_times()
+    }
+
     fn run_in(&self, scenario: &Scenario, substeps: Substeps) -> Option<Result<Rollout, RunError>> {
         (**self).run_in(scenario, substeps)
     }
+}
+
+/// How long a system under test takes for an answer.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AnswerTimes {
+    /// Answers.
+    pub answers: usize,
+    /// Half of them came sooner. [s]
+    pub median_s: f64,
+    /// [s]
+    pub greatest_s: f64,
 }
 
 /// Why there is no rollout of a scenario.

@@ -16,6 +16,7 @@ mod import;
 mod ledger;
 mod model;
 mod parity;
+mod profile;
 mod prompt;
 mod read;
 mod reconstruct;
@@ -188,6 +189,8 @@ pub enum Command {
     /// Print the JSON Schema of scenario files.
     #[command(after_help = SCHEMA_EXAMPLES)]
     Schema,
+    /// Print a built-in system profile, to write one's own after.
+    Profile(profile::ProfileArgs),
     /// Print the completions of a shell.
     Completions(shell::CompletionArgs),
     /// Write the manual pages.
@@ -248,6 +251,7 @@ pub fn run(cli: &Cli) -> Result<(), PipelineError> {
         #[cfg(feature = "parquet")]
         Command::Sweep(args) => sweep::run(args, output),
         Command::Schema => schema::run(),
+        Command::Profile(args) => profile::run(args),
         Command::Completions(args) => {
             shell::completions(args);
             Ok(())

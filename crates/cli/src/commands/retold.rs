@@ -225,6 +225,18 @@ fn failures(runs: &TestedRuns) -> String {
     if total == 0 { of } else { format!("{of}: {}", runs.failures) }
 }
 
+/// That the ego does not repeat, where it drove one scenario in two ways.
+pub fn unrepeated(summary: &Summary) {
+    let cases: Vec<&str> = summary.cases.iter().filter(|case| case.unrepeated).map(|case| case.id.as_str()).collect();
+    if let Some(first) = cases.first() {
+        let others = if cases.len() > 1 { format!(" and {} others", cases.len() - 1) } else { String::new() };
+        sentence(&format!(
+            "{} the ego does not repeat: it drove {first}{others} twice, and otherwise the second time; what it fails may pass the next time",
+            yellow("warning:")
+        ));
+    }
+}
+
 fn result(summary: &Summary) {
     let count = |holds: &dyn Fn(&CaseSummary) -> bool| summary.cases.iter().filter(|case| holds(case)).count();
     let [first, last] = summary.tested();
@@ -267,6 +279,7 @@ fn result(summary: &Summary) {
     if edited > 0 {
         println!("  {edited} edited by hand, and kept");
     }
+    unrepeated(summary);
     let listed = |counts: Vec<(&str, usize)>| {
         let listed: Vec<String> = counts.into_iter().map(|(label, count)| format!("{label} {count}")).collect();
         listed.join(", ")

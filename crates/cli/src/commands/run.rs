@@ -226,6 +226,7 @@ fn ending(summary: &Summary, dir: &Path) {
         let told: Vec<String> = counts.into_iter().map(|(label, count)| format!("{count} {label}")).collect();
         told.join(", ")
     };
+    retold::unrepeated(summary);
     let causes = summary.causes();
     if !causes.is_empty() {
         let word = if causes.len() == 1 { "cause" } else { "causes" };

@@ -10,7 +10,7 @@ use clap::Args;
 use recrash_model::cause::{Cause, Failures};
 use recrash_model::comparison::{Change, Comparison, TypeRow, shown_p};
 use recrash_model::preventability::Bracket;
-use recrash_model::results::{TestOutcome, TestResult, TestResults, TestVerdict};
+use recrash_model::results::{TestOutcome, TestResult, TestResults, TestVerdict, Unrepeated};
 use recrash_pipeline::{
     CiFiles, Outputs, PageRequest, PipelineError, SimulatorKind, TestRequest, by_cause, compare_files, compare_with,
     comparison_sentence, default_python, github_annotations, hold_to, must_tell, read_results, test, write_page,
@@ -246,6 +246,12 @@ fn show_results(results: &TestResults) {
         rows.add_row([Cell::new(kind)].into_iter().chain(counts.map(number)));
     }
     println!("{rows}");
+    if let Some(unrepeated) = &results.unrepeated {
+        let Unrepeated { test, why } = unrepeated;
+        screen::sentence(&format!(
+            "warning: the ego does not repeat: {test} was run twice, and {why}; what it fails may pass the next time"
+        ));
+    }
     if results.tests.iter().any(TestResult::never_met) {
         screen::sentence("not met: never in the situation of its record, no failure and no pass");
     }

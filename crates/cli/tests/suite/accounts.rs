@@ -212,6 +212,20 @@ fn an_account_that_somebody_spoiled_stops_its_case_alone_until_it_is_mended() {
     let failed: Vec<bool> = cases(&place).iter().map(|case| case["failure"].is_object()).collect();
     assert_eq!(failed.iter().filter(|failed| **failed).count(), 1, "{remarks}");
     assert!(failed[0] && remarks.contains(&format!("{id}.account.json")), "{remarks}");
+    // A word that there is not: where, and what was probably meant.
+    let text = String::from_utf8(whole.clone()).unwrap();
+    let (before, behind) = text.split_once("\"crash_type\"").unwrap();
+    let typed = before.to_owned() + "\"crash_type\"" + &behind.replacen("\"value\": \"", "\"value\": \"x_", 1);
+    let line = typed.lines().position(|line| line.contains("\"x_")).unwrap() + 1;
+    std::fs::write(&file, &typed).unwrap();
+    let (_, _, remarks) = place.run(&TOLD);
+    let words = [
+        &*format!(".account.json: line {line}, crash_type.value: there is no word `x_"),
+        "did you mean",
+        "discard-edits",
+    ];
+    assert!(words.iter().all(|words| remarks.contains(words)), "{remarks}");
+    assert_eq!(std::fs::read_to_string(&file).unwrap(), typed);
     std::fs::write(&file, whole).unwrap();
     let (code, _, remarks) = place.run(&TOLD);
     assert_eq!(code, 0, "{remarks}");

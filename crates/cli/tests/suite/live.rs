@@ -681,6 +681,23 @@ fn a_stage_command_asks_no_model_that_only_the_suite_names() {
 }
 
 #[test]
+fn a_missing_key_and_an_ego_that_does_not_start_are_told_before_any_work() {
+    for (typed, told) in [
+        (["--design", "gpt-5"], "gpt-5 needs a key"),
+        (["--ego", "cmd:false"], "the ego `cmd:false`: ended at hello"),
+        (["--ego", "cmd:echo hello"], "answered hello with something else"),
+    ] {
+        let folder = Folder::new();
+        let mut command = recrash(&["run", "--quiet", "--profile", "open", "--out"]);
+        command.arg(folder.suite()).args(["--records", FEW, "--budget", "3"]).args(typed);
+        let output = command.env_remove("OPENAI_API_KEY").env_remove("RECRASH_BASE_URL").output().unwrap();
+        assert_eq!(output.status.code(), Some(3), "{}", shown(&output));
+        assert!(shown(&output).contains(told), "{told}: {}", shown(&output));
+        assert!(!folder.suite().exists(), "{told}: nothing was begun");
+    }
+}
+
+#[test]
 fn a_typing_error_is_told_before_any_question_is_asked() {
     let server = server(|_| None);
     for (typed, told) in [

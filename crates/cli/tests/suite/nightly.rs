@@ -290,6 +290,53 @@ fn an_ego_that_is_random_is_flaky_and_not_broken() {
     assert!(flaky.iter().all(|test| test["p"].as_f64().unwrap() > 0.05), "{flaky:?}");
 }
 
+/// An ego that drives faster in each of its runs.
+const LEARNING: &str = r#"
+import json, pathlib, sys
+runs = pathlib.Path("runs")
+for line in sys.stdin:
+    message = json.loads(line)
+    if message["type"] == "reset":
+        count = int(runs.read_text()) + 1 if runs.exists() else 0
+        runs.write_text(str(count))
+    if message["type"] == "step":
+        slow = message["ego"]["speed"] < 2.0 + 0.1 * count
+        answer = {"type": "control", "throttle": 0.3 if slow else -0.2, "steer": 0.0}
+    else:
+        answer = {"type": "ready", "protocol": "recrash.ego/1"}
+    if message["type"] != "end":
+        print(json.dumps(answer), flush=True)
+"#;
+
+#[test]
+fn an_ego_that_does_not_repeat_is_told_and_written_down() {
+    let place = frozen();
+    std::fs::write(place.path("learning.py"), LEARNING).unwrap();
+    std::fs::write(place.path("steady.py"), crate::common::driving_ego(6.0)).unwrap();
+    let results = |name: &str| -> (Value, String) {
+        let ego = format!("cmd:python3 {name}");
+        let (code, shown, errors) = test(&place, &["--threads", "1", "--ego", &ego, "--out", "results.json"]);
+        assert_eq!(code, 0, "{errors}");
+        assert!(errors.contains("answer times of the ego: median "), "{errors}");
+        (serde_json::from_slice(&std::fs::read(place.path("results.json")).unwrap()).unwrap(), shown)
+    };
+    let (steady, shown) = results("steady.py");
+    assert!(steady["unrepeated"].is_null() && !shown.contains("does not repeat"), "{shown}");
+    let (learning, shown) = results("learning.py");
+    assert_eq!(learning["unrepeated"]["test"], learning["tests"][0]["id"], "{shown}");
+    assert!(shown.contains("warning: the ego does not repeat"), "{shown}");
+    // Such results can be read again.
+    let (code, _, errors) = place.run(&["compare", "results.json", "results.json"]);
+    assert_eq!(code, 0, "{errors}");
+
+    let run = ["run", "--records", FEW, "--budget", "2", "--tune-budget", "1", "--threads", "1", "--out", "learnt"];
+    let (code, shown, errors) = place.run(&[&run[..], &["--ego", "cmd:python3 learning.py"]].concat());
+    assert_eq!(code, 0, "{errors}");
+    assert!(shown.contains("warning: the ego does not repeat"), "{shown}");
+    let summary: Value = serde_json::from_slice(&std::fs::read(place.path("learnt/summary.json")).unwrap()).unwrap();
+    assert!(summary["cases"].as_array().unwrap().iter().any(|case| case["unrepeated"] == true), "{summary}");
+}
+
 #[test]
 fn what_is_wrong_with_a_file_is_told_with_its_place() {
     let place = frozen();

@@ -35,6 +35,7 @@ fn results(tests: Vec<(&str, Vec<TestRun>)>) -> TestResults {
         runs,
     };
     TestResults {
+        unrepeated: None,
         format: RESULTS_FORMAT.to_owned(),
         recrash: String::new(),
         suite: String::new(),

@@ -211,6 +211,40 @@ pub(crate) fn scenario(suite: &Suite, id: &str, file: &str) -> Result<Scenario, 
     read_scenario(&suite.store().path(file)).map(|(scenario, _)| scenario).map_err(|error| of_case(id, error))
 }
 
+/// What is wrong with a file that a person may have edited: where first, then what was probably meant. The edit is theirs, and stays.
+pub(super) fn edited(error: PipelineError) -> PipelineError {
+    let PipelineError::Damaged { path, problem } = error else { return error };
+    let (problem, place) = problem.rsplit_once(" at line ").unwrap_or((&problem, ""));
+    let line = place.split(' ').next().filter(|line| !line.is_empty());
+    let line = line.map_or_else(String::new, |line| format!("line {line}, "));
+    let told = match problem.split_once("unknown variant `") {
+        Some((before, rest)) => {
+            let (found, known) = rest.split_once("`, expected ").unwrap_or((rest, ""));
+            let known: Vec<&str> = known.split('`').skip(1).step_by(2).collect();
+            format!("{before}there is no word `{found}` here; {}", meant(found, &known))
+        }
+        None => problem.to_owned(),
+    };
+    PipelineError::bad_input(format!(
+        "{}: {line}{told}: correct it, or discard edits (discard-edits) to have it made anew",
+        path.display()
+    ))
+}
+
+/// The words that were probably meant, or what there is.
+fn meant(found: &str, known: &[&str]) -> String {
+    const LISTED: usize = 8;
+    let mut near: Vec<&str> =
+        known.iter().copied().filter(|word| word.contains(found) || found.contains(word)).collect();
+    near.extend(recrash_roads::nearest(found, known).filter(|word| !near.contains(word)));
+    if near.is_empty() {
+        let more = known.len().saturating_sub(LISTED);
+        let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+        return format!("there are {}{more}", known[..known.len().min(LISTED)].join(", "));
+    }
+    format!("did you mean {}?", near[..near.len().min(LISTED)].join(", "))
+}
+
 /// What one case's file is no good for stops that case and no other.
 pub(super) fn of_case(id: &str, error: PipelineError) -> PipelineError {
     match error {

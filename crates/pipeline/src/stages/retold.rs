@@ -2,7 +2,7 @@
 //! driver; the system under test takes over before the contact.
 
 use super::ahead::Ahead;
-use super::cases::{case_seed, of_case, scenario, text_of};
+use super::cases::{case_seed, edited, of_case, scenario, text_of};
 use super::design_log::{DesignAttempt, DesignLog};
 use super::restage::restaged;
 use super::tune::tune_options;
@@ -83,7 +83,7 @@ pub(super) const DECLARED: [CaseStage; 5] = [
 
 /// The account of a case, as it stands in its file: a person may have edited it.
 pub(super) fn account(suite: &Suite, id: &str) -> Result<Account, PipelineError> {
-    suite.store().read_json(&names::account(id)).map_err(|error| of_case(id, error))
+    suite.store().read_json(&names::account(id)).map_err(|error| of_case(id, edited(error)))
 }
 
 fn narrate(bench: &Bench, cluster: &Cluster) -> Result<Files, PipelineError> {

@@ -220,6 +220,10 @@ pub struct CaseSummary {
     pub failure: Option<Failure>,
     /// Points the search scored.
     pub points: usize,
+    /// Whether the system under test drove the same scenario otherwise when it was run in it again: a program whose answers do not
+    /// repeat.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub unrepeated: bool,
 }
 
 /// Reviews in numbers.
@@ -410,6 +414,10 @@ impl CaseSummary {
             triage: case.triage.clone(),
             failure: case.failure.clone(),
             points: case.tuned.as_ref().map_or(0, |tuned| tuned.log.points.len()),
+            unrepeated: case.first.as_ref().zip(case.tuned.as_ref()).is_some_and(|(first, tuned)| {
+                let (before, after) = (&first.run.rollout, &tuned.ran.run.rollout);
+                first.scenario.draft() == tuned.ran.scenario.draft() && before.state_hash != after.state_hash
+            }),
         }
     }
 }

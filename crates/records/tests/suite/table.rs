@@ -83,6 +83,19 @@ fn a_spreadsheet_runs_no_cell_of_a_csv_table_and_every_text_comes_back() {
 }
 
 #[test]
+fn a_csv_table_holds_nothing_that_a_terminal_obeys() {
+    let odd = [
+        ("Reporting Entity", "A\u{1b}[2J Inc.\u{202e}"),
+        ("Narrative", "It \u{1b}]0;x\u{7} stopped.\nThen it went on."),
+    ];
+    let set = ingest_bytes(second(&[row(Edition::Second, "1-\u{202e}1", &odd)]).as_bytes()).value;
+    let table = String::from_utf8(csv_of(&set, TableRows::All)).unwrap();
+    let obeyed = |c: char| c.is_control() && !matches!(c, '\n' | '\r' | '\t') || c == '\u{202e}';
+    assert!(!table.contains(obeyed), "{table:?}");
+    assert!(table.contains("A\u{fffd}[2J Inc.") && table.contains("stopped.\nThen"), "{table:?}");
+}
+
+#[test]
 fn the_sample_spreads_as_its_generator_says() {
     let set = ingest(&[SourceText { name: "sample.csv", bytes: SAMPLE_CSV.as_bytes() }], &paper()).unwrap().value;
     let all = distributions(&set);

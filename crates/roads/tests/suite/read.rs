@@ -51,6 +51,22 @@ fn an_unknown_field_names_the_one_that_was_probably_meant() {
 }
 
 #[test]
+fn a_field_of_another_type_of_map_names_that_type() {
+    let (_, path, _, _, hint) = only("\"arm_m\"", "\"roads\"");
+    assert_eq!(path, "map.roads");
+    assert!(hint.starts_with("a map of type G has that field, and this one is of type X"), "{hint}");
+}
+
+#[test]
+fn an_object_with_one_key_names_the_keys() {
+    let text = r#"{"format": "recrash.scenario/2", "id": "a", "map": {"type": "G", "roads": [{"id": "main",
+        "start": {"x_m": 0.0, "y_m": 0.0}, "line": [{"straight": {"length_m": 9.0}}], "right": []}]}}"#;
+    let told = read_draft(text).expect_err("no start");
+    let start = told.iter().find(|told| told.location.path.as_deref() == Some("map.roads[0].start")).expect("told");
+    assert!(start.message.ends_with("one of at, after, arm, into_lane, from_lane"), "{start:?}");
+}
+
+#[test]
 fn a_wrong_type_is_told_with_its_path_and_line() {
     let (code, path, line, message, hint) = only("\"speed_mps\": 9.0", "\"speed_mps\": \"fast\"");
     assert_eq!((code.as_str(), path.as_str(), line), ("scenario.type", "partners[0].speed_mps", 15));

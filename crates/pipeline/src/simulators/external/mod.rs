@@ -18,7 +18,7 @@ pub use protocol::{told_at_reset, told_at_step};
 use crate::error::PipelineError;
 use process::EgoProcess;
 use recrash_model::rollout::{Rollout, Substeps};
-use recrash_roads::{RunError, Scenario, Simulator};
+use recrash_roads::{AnswerTimes, RunError, Scenario, Simulator};
 use recrash_sim::{Native, RolloutRecorder, Runner};
 use std::path::Path;
 use std::sync::{Mutex, PoisonError};
@@ -39,6 +39,8 @@ pub struct ExternalEgo {
     command: EgoCommand,
     patience: Patience,
     idle: Mutex<Vec<EgoProcess>>,
+    /// How long every decision so far was waited for. [us]
+    waited_us: Mutex<Vec<u32>>,
 }
 
 impl ExternalEgo {
@@ -49,7 +51,7 @@ impl ExternalEgo {
     pub fn start(command: EgoCommand, patience: Patience) -> Result<Self, PipelineError> {
         let first = EgoProcess::start(&command, patience)
             .map_err(|fault| PipelineError::bad_input(format!("the ego {command}: {fault}")))?;
-        Ok(Self { command, patience, idle: Mutex::new(vec![first]) })
+        Ok(Self { command, patience, idle: Mutex::new(vec![first]), waited_us: Mutex::default() })
     }
 
     fn rollout(&self, scenario: &Scenario, substeps: Substeps) -> Result<Rollout, RunError> {
@@ -61,7 +63,9 @@ impl ExternalEgo {
         };
         let mut recorder = RolloutRecorder::new();
         // A process with a fault is dropped, which ends it: what it has in its memory is not known.
-        Runner::new().stepping(substeps).run_with(scenario, &mut process, &mut recorder).map_err(failed)?;
+        let run = Runner::new().stepping(substeps).run_with(scenario, &mut process, &mut recorder);
+        self.waited_us.lock().unwrap_or_else(PoisonError::into_inner).extend(process.take_waited());
+        run.map_err(failed)?;
         self.idle.lock().unwrap_or_else(PoisonError::into_inner).push(process);
         Ok(recorder.finish().unwrap_or_else(|| unreachable!("a run begins and ends")))
     }
@@ -78,6 +82,14 @@ impl Simulator for ExternalEgo {
 
     fn ego(&self) -> &str {
         self.command.as_str()
+    }
+
+    fn answer_times(&self) -> Option<AnswerTimes> {
+        let mut waited = self.waited_us.lock().unwrap_or_else(PoisonError::into_inner).clone();
+        waited.sort_unstable();
+        let seconds = |us: &u32| f64::from(*us) * 1e-6;
+        let (median_s, greatest_s) = (waited.get(waited.len() / 2).map(seconds)?, waited.last().map(seconds)?);
+        Some(AnswerTimes { answers: waited.len(), median_s, greatest_s })
     }
 
     /// It fails where the program does: what that did, and at which step.

@@ -11,7 +11,7 @@ use recrash_model::vehicle::VehicleSpec;
 use recrash_roads::Scenario;
 use recrash_sim::{CastMember, Controls, EgoDriver, Observation};
 use std::process::Command;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// The longest answer; a control has some fifty bytes. [bytes]
 const MAX_ANSWER_BYTES: u64 = 1 << 20;
@@ -118,6 +118,8 @@ pub(crate) struct EgoProcess {
     ids: Vec<String>,
     spec: VehicleSpec,
     scrubber: Scrubber,
+    /// How long each decision was waited for, until they are taken. [us]
+    waited_us: Vec<u32>,
 }
 
 impl EgoProcess {
@@ -132,6 +134,7 @@ impl EgoProcess {
             ids: Vec::new(),
             spec: VehicleSpec::of(PartnerKind::PassengerCar),
             scrubber: secrets::scrubber(),
+            waited_us: Vec::new(),
         };
         let hello = Said::Hello { protocol: PROTOCOL, recrash: env!("CARGO_PKG_VERSION") };
         match process.ask(&hello, "hello", patience.start, READY)? {
@@ -176,6 +179,11 @@ impl EgoProcess {
 }
 
 impl EgoProcess {
+    /// How long its decisions took since this was asked last. [us]
+    pub(super) fn take_waited(&mut self) -> Vec<u32> {
+        std::mem::take(&mut self.waited_us)
+    }
+
     fn rubbish(&self, question: &str, wanted: &'static str, line: &str) -> EgoFault {
         EgoFault::Rubbish { question: question.to_owned(), wanted, beginning: self.presentable(line, 80) }
     }
@@ -212,7 +220,9 @@ impl EgoDriver for EgoProcess {
     fn decide(&mut self, observation: &Observation<'_>) -> Result<Controls, EgoFault> {
         let question = format!("step {}", observation.step);
         let ids = std::mem::take(&mut self.ids);
+        let asked = Instant::now();
         let answer = self.ask(&Said::Step(Step::new(observation, &ids)), &question, self.patience.answer, CONTROL);
+        self.waited_us.push(u32::try_from(asked.elapsed().as_micros()).unwrap_or(u32::MAX));
         self.ids = ids;
         match answer? {
             (Answer::Control(control), _) => Ok(control.controls(&self.spec)),

@@ -22,7 +22,7 @@ use rayon::prelude::*;
 use recrash_lab::run_scenario;
 use recrash_model::frozen::{FROZEN_FILE, FrozenTest};
 use recrash_model::kinds::PartnerKind;
-use recrash_model::results::{TestOutcome, TestResults, TestVerdict};
+use recrash_model::results::{TestOutcome, TestResults, TestVerdict, Unrepeated};
 use recrash_model::vehicle::VehicleSpec;
 use recrash_roads::Scenario;
 use serde::Serialize;
@@ -76,6 +76,9 @@ struct Runs {
     suite: String,
     ego: String,
     simulator: String,
+    /// That the ego does not repeat, where one test was driven otherwise when it was run again.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    unrepeated: Option<Unrepeated>,
     masses_kg: BTreeMap<String, Option<f64>>,
     tests: Vec<TestFacts>,
 }
@@ -148,6 +151,9 @@ fn write(
         suite: bench.opened.suite.content.clone(),
         ego: bench.simulator.ego().to_owned(),
         simulator: format!("{} {}", bench.simulator.name(), bench.simulator.version()),
+        unrepeated: bench.unrepeated(
+            facts.iter().find_map(|test| Some((test.id.as_str(), test.outcome.as_ref()?.state_hash.as_str()))),
+        ),
         masses_kg: masses(),
         tests: facts,
     };

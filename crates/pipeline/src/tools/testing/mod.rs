@@ -6,7 +6,7 @@ use crate::files::output::Outputs;
 use crate::progress::{Progress, ProgressEvent};
 use crate::reading::documents::read_document;
 use crate::reading::named;
-use crate::simulators::external::Patience;
+use crate::simulators::external::{EgoCommand, Patience};
 use crate::simulators::{Simulator, SimulatorKind, start_simulator};
 use crate::suite::{refuse_untrusted, thread_pool};
 use crate::tools::freezing::Opened;
@@ -18,10 +18,10 @@ use recrash_model::Seed;
 use recrash_model::frozen::FrozenTest;
 use recrash_model::metrics::CheckResult;
 use recrash_model::profile::SystemProfile;
-use recrash_model::results::{RESULTS_FORMAT, TestOutcome, TestResult, TestResults, TestRun, TestVerdict};
+use recrash_model::results::{RESULTS_FORMAT, TestOutcome, TestResult, TestResults, TestRun, TestVerdict, Unrepeated};
 use recrash_model::run::JudgedRun;
 use recrash_model::scenario::ScenarioDraft;
-use recrash_roads::Scenario;
+use recrash_roads::{AnswerTimes, Scenario};
 use std::path::{Path, PathBuf};
 
 /// Name of what is done, for progress.
@@ -77,9 +77,31 @@ impl Bench {
         &self.opened.suite.profile
     }
 
+    /// Where the ego is a program: this test, with the hash of what was driven in it, is run again; what is said where that gives
+    /// something else.
+    pub fn unrepeated(&self, driven: Option<(&str, &str)>) -> Option<Unrepeated> {
+        EgoCommand::parse(self.simulator.ego()).ok().flatten()?;
+        let (id, hash) = driven?;
+        let at = self.opened.suite.tests.iter().position(|test| test.id == id)?;
+        let again = self.simulator.run(&self.opened.scenarios[at]);
+        let why = match again {
+            Ok(rollout) if rollout.state_hash == hash => return None,
+            Ok(rollout) => format!("the states are others: {hash} the first time, {} the second", rollout.state_hash),
+            Err(error) => {
+                format!("no answer the second time: {}", crate::secrets::scrubber().scrub(&error.why.to_string()))
+            }
+        };
+        Some(Unrepeated { test: id.to_owned(), why })
+    }
+
     /// Results with these tests.
     pub fn results(&self, tests: Vec<TestResult>, seeds: u32) -> TestResults {
         let suite = &self.opened.suite;
+        let mut driven = tests.iter().filter_map(|test| {
+            let outcome = test.runs.first()?.outcome.as_ref()?;
+            Some((test.id.as_str(), outcome.state_hash.as_str()))
+        });
+        let unrepeated = self.unrepeated(driven.next());
         TestResults {
             format: RESULTS_FORMAT.to_owned(),
             recrash: env!("CARGO_PKG_VERSION").to_owned(),
@@ -88,6 +110,7 @@ impl Bench {
             ego: self.simulator.ego().to_owned(),
             simulator: format!("{} {}", self.simulator.name(), self.simulator.version()),
             seeds,
+            unrepeated,
             tests,
         }
     }
@@ -113,6 +136,12 @@ pub fn test(request: &TestRequest, progress: &dyn Progress) -> Result<TestResult
     });
     progress.event(ProgressEvent::Finished { stage: STAGE });
     let results = bench.results(tests, request.seeds);
+    if let Some(AnswerTimes { answers, median_s, greatest_s }) = bench.simulator.answer_times() {
+        let (median_ms, greatest_ms) = (1e3 * median_s, 1e3 * greatest_s);
+        let what =
+            format!("answer times of the ego: median {median_ms:.1} ms, greatest {greatest_ms:.1} ms, of {answers}");
+        progress.event(ProgressEvent::Said { what: &what });
+    }
     if let Some(output) = output {
         output.write(&to_json(&results))?;
     }
