@@ -95,7 +95,7 @@ fn an_index_says_what_became_of_each_incident_and_how_the_two_touch() {
         assert_eq!(told(&row), place.path(&format!("scenes/{}.json", row["scenario"])).is_file(), "{row:?}");
         for name in ["ego_impact_speed_mps", "other_impact_speed_mps", "delta_v_mps"] {
             assert_eq!(row[name].parse().ok(), impact[name].as_f64(), "{name}: {row:?}");
-            assert_eq!(row[name].is_empty(), !told(&row), "{name}: {row:?}");
+            assert!(row[name].is_empty() || told(&row), "{name}: {row:?}");
         }
     }
     assert!(index.iter().any(|row| row["ego_impact_speed_mps"].parse::<f64>().is_ok_and(|speed| speed > 1.0)));
