@@ -11,11 +11,8 @@ use crate::simulators::{SimulatorKind, start_simulator};
 use recrash_lab::{replay, run_scenario};
 use recrash_model::run::JudgedRun;
 use recrash_model::{Diagnostic, Outcome};
-use recrash_roads::Scenario;
+use recrash_roads::{MAX_SCENARIO_BYTES, Scenario};
 use std::path::Path;
-
-/// Scenario files larger than this are refused. [bytes]
-const MAX_SCENARIO_FILE: u64 = 1 << 20;
 
 /// One scenario file, run.
 #[derive(Debug, Clone, PartialEq)]
@@ -78,7 +75,7 @@ pub fn simulate_file(request: &FileRequest) -> Result<FileRun, PipelineError> {
 /// # Errors
 /// As [`simulate_file`].
 pub fn read_scenario(path: &Path) -> Result<(Scenario, Vec<Diagnostic>), PipelineError> {
-    let text = read_text(path, MAX_SCENARIO_FILE)?;
+    let text = read_text(path, MAX_SCENARIO_BYTES as u64)?;
     match scenario_from(&text) {
         Ok(read) => Ok((read.value, read.diagnostics)),
         Err(diagnostics) => Err(not_runnable(path, diagnostics)),
