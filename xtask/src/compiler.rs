@@ -181,7 +181,7 @@ fn calls() -> Result<Vec<Call>> {
     read.filter(|call| call.as_ref().map_or(true, source)).collect()
 }
 
-/// Pages of every library and program, warnings denied.
+/// Pages of every library and program, warnings denied, and links that lead nowhere.
 pub fn pages() -> Result {
     for call in calls()? {
         let mut rustdoc = call.again("rustdoc");
@@ -190,7 +190,8 @@ pub fn pages() -> Result {
                 rustdoc.arg(argument).args(value);
             }
         }
-        run(rustdoc.args(["--document-private-items", "-D", "warnings", "--out-dir"]).arg(target().join("doc")))?;
+        let pages = ["--document-private-items", "-D", "warnings", "--out-dir"];
+        crate::links::checked(rustdoc.args(pages).arg(target().join("doc")))?;
     }
     Ok(())
 }

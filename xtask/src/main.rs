@@ -4,6 +4,7 @@ mod compiler;
 mod edges;
 mod fuzz;
 mod licences;
+mod links;
 mod pages;
 mod steps;
 mod tally;

@@ -1,6 +1,6 @@
 //! Wires the stages, and owns everything outside them: files, the clock, the environment, threads.
 //!
-//! [`Suite`] is a folder on disk with one stage after the other in it. [`Suite::run_stage`] runs one, reading what the
+//! [`Suite`] is a folder on disk with one stage after the other in it. [`run_stage`] runs one, reading what the
 //! stages before wrote; a unit of work whose inputs have not changed is skipped, and what is written is written whole.
 //! So a run killed at any moment goes on where it stopped, and ends with the same bytes.
 //!

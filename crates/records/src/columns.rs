@@ -121,60 +121,69 @@ const WEATHER: [(&str, Weather); 11] = [
     ("Weather - Structure-Indoor", Weather::Indoor),
 ];
 
+/// A column that is read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Column {
+    /// Its position; none where the file lacks it.
+    pub at: Option<usize>,
+    /// Its name, for messages.
+    pub name: &'static str,
+}
+
 /// Where a row says whether it lay in a work zone.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum WorkZoneColumn {
     /// `Roadway Description` holds `Work Zone` (first and second edition).
-    Description(usize),
+    Description(Column),
     /// A flag column of its own (third edition).
-    Flag(usize),
+    Flag(Column),
 }
 
 /// Where a row says something of the vehicles of both sides.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SidesColumns {
     /// A column each, `Yes` or `No` (first and second edition).
-    Each { sv: Option<usize>, cp: Option<usize> },
+    Each { sv: Column, cp: Column },
     /// One column that names both, `Yes Subject Vehicle, No Crash Partner` (third edition).
-    Both(usize),
+    Both(Column),
 }
 
-/// Positions of the columns that are read. Columns that a file may lack are `None` then.
+/// The columns that are read.
 #[derive(Debug, Clone)]
 pub struct Columns {
     pub edition: Edition,
     pub width: usize,
-    pub report_id: usize,
-    pub report_version: usize,
-    pub road: usize,
-    pub cp_movement: usize,
-    pub sv_movement: usize,
-    pub narrative: usize,
+    pub report_id: Column,
+    pub report_version: Column,
+    pub road: Column,
+    pub cp_movement: Column,
+    pub sv_movement: Column,
+    pub narrative: Column,
     pub work_zone: WorkZoneColumn,
-    pub entity: Option<usize>,
-    pub report_type: Option<usize>,
-    pub make: Option<usize>,
-    pub model: Option<usize>,
-    pub model_year: Option<usize>,
-    pub engaged: Option<usize>,
-    pub engagement_status: Option<usize>,
-    pub operator: Option<usize>,
-    pub date: Option<usize>,
-    pub time: Option<usize>,
-    pub incident_id: Option<usize>,
-    pub city: Option<usize>,
-    pub state: Option<usize>,
-    pub surface: Option<usize>,
-    pub surface_wet: Option<usize>,
-    pub surface_usual: Option<usize>,
-    pub posted_speed: Option<usize>,
-    pub lighting: Option<usize>,
-    pub crash_with: Option<usize>,
-    pub severity: Option<usize>,
+    pub entity: Column,
+    pub report_type: Column,
+    pub make: Column,
+    pub model: Column,
+    pub model_year: Column,
+    pub engaged: Column,
+    pub engagement_status: Column,
+    pub operator: Column,
+    pub date: Column,
+    pub time: Column,
+    pub incident_id: Column,
+    pub city: Column,
+    pub state: Column,
+    pub surface: Column,
+    pub surface_wet: Column,
+    pub surface_usual: Column,
+    pub posted_speed: Column,
+    pub lighting: Column,
+    pub crash_with: Column,
+    pub severity: Column,
     pub towed: SidesColumns,
     pub airbags: SidesColumns,
-    pub sv_speed: Option<usize>,
-    pub sv_speed_unknown: Option<usize>,
+    pub sv_speed: Column,
+    pub sv_speed_unknown: Column,
     pub weather: Vec<(usize, Weather)>,
     pub sv_zones: Vec<(usize, ContactZone)>,
     pub cp_zones: Vec<(usize, ContactZone)>,
@@ -264,13 +273,19 @@ impl Header {
         self.keys.iter().position(|key| *key == wanted)
     }
 
+    /// The column of this name.
+    fn column(&self, name: &'static str) -> Column {
+        Column { at: self.find(name), name }
+    }
+
     /// Where the work zone stands, in a line that has all that a crash record needs.
     fn work_zone(&self) -> Result<WorkZoneColumn, NotAHeader> {
-        let description = self.find("Roadway Description").map(WorkZoneColumn::Description);
-        let work_zone = self.find("Roadway-Work Zone").map(WorkZoneColumn::Flag).or(description);
+        let (flag, description) = (self.column("Roadway-Work Zone"), self.column("Roadway Description"));
+        let described = description.at.map(|_| WorkZoneColumn::Description(description));
+        let work_zone = flag.at.map(|_| WorkZoneColumn::Flag(flag)).or(described);
         let mut names: Vec<&'static str> = REQUIRED.into_iter().filter(|name| self.find(name).is_none()).collect();
         if work_zone.is_none() {
-            names.push(if self.edition == Edition::Third { "Roadway-Work Zone" } else { "Roadway Description" });
+            names.push(if self.edition == Edition::Third { flag.name } else { description.name });
         }
         match work_zone {
             Some(work_zone) if names.is_empty() => Ok(work_zone),
@@ -280,24 +295,23 @@ impl Header {
 
     /// The positions of all that is read, and which columns of the edition are not here.
     fn columns(&self, work_zone: WorkZoneColumn) -> (Columns, Vec<&'static str>) {
-        let required = |name: &str| self.find(name).unwrap_or(0);
         let mut absent = Vec::new();
         let mut wanted = |name: &'static str| {
-            let position = self.find(name);
-            if position.is_none() && published_header(self.edition).any(|column| column == name) {
+            let column = self.column(name);
+            if column.at.is_none() && published_header(self.edition).any(|column| column == name) {
                 absent.push(name);
             }
-            position
+            column
         };
         let columns = Columns {
             edition: self.edition,
             width: self.keys.len(),
-            report_id: required("Report ID"),
-            report_version: required("Report Version"),
-            road: required("Roadway Type"),
-            cp_movement: required("CP Pre-Crash Movement"),
-            sv_movement: required("SV Pre-Crash Movement"),
-            narrative: required("Narrative"),
+            report_id: self.column("Report ID"),
+            report_version: self.column("Report Version"),
+            road: self.column("Roadway Type"),
+            cp_movement: self.column("CP Pre-Crash Movement"),
+            sv_movement: self.column("SV Pre-Crash Movement"),
+            narrative: self.column("Narrative"),
             work_zone,
             entity: wanted("Reporting Entity"),
             report_type: wanted("Report Type"),
@@ -318,7 +332,10 @@ impl Header {
             posted_speed: wanted("Posted Speed Limit (MPH)"),
             lighting: wanted("Lighting"),
             crash_with: wanted("Crash With"),
-            severity: wanted("Highest Injury Severity Alleged").or_else(|| self.find("Highest Injury Severity")),
+            severity: match wanted("Highest Injury Severity Alleged") {
+                Column { at: None, .. } => self.column("Highest Injury Severity"),
+                alleged => alleged,
+            },
             towed: self.sides(
                 "Was Any Vehicle Towed?",
                 ["SV Was Vehicle Towed?", "CP Was Vehicle Towed?"],
@@ -341,13 +358,13 @@ impl Header {
     /// The one column that names both sides, or a column for each of them.
     fn sides(
         &self,
-        both: &str,
+        both: &'static str,
         [sv, cp]: [&'static str; 2],
-        mut wanted: impl FnMut(&'static str) -> Option<usize>,
+        mut wanted: impl FnMut(&'static str) -> Column,
     ) -> SidesColumns {
-        match self.find(both) {
-            Some(both) => SidesColumns::Both(both),
-            None => SidesColumns::Each { sv: wanted(sv), cp: wanted(cp) },
+        match self.column(both) {
+            Column { at: None, .. } => SidesColumns::Each { sv: wanted(sv), cp: wanted(cp) },
+            both => SidesColumns::Both(both),
         }
     }
 

@@ -2,7 +2,7 @@
 
 use crate::cells::{self, Cell};
 use crate::codes;
-use crate::columns::{Columns, SidesColumns, WorkZoneColumn};
+use crate::columns::{Column, Columns, SidesColumns, WorkZoneColumn};
 use crate::notes::{Notes, Remark};
 use crate::text::{decode, mend_twice_encoded, same_code};
 use csv::ByteRecord;
@@ -25,8 +25,8 @@ pub struct Draft {
 
 /// The row's report id and version, where they can be read.
 pub fn record_ref(row: &ByteRecord, columns: &Columns) -> Option<RecordRef> {
-    let report_id = decode(row.get(columns.report_id)?).0.trim().to_owned();
-    let version = decode(row.get(columns.report_version)?).0;
+    let report_id = decode(row.get(columns.report_id.at?)?).0.trim().to_owned();
+    let version = decode(row.get(columns.report_version.at?)?).0;
     // Spreadsheets and data frames write whole numbers as `1.0`.
     let version = match version.trim().split_once('.') {
         Some((whole, zeros)) if !zeros.is_empty() && zeros.bytes().all(|digit| digit == b'0') => whole.parse(),
@@ -62,29 +62,27 @@ pub fn read(row: &ByteRecord, columns: &Columns, file: &str, number: u64, notes:
         id,
         incident_id: Some(cells.owned(columns.incident_id)).filter(|text| !text.is_empty()),
         vehicle: joined(" ", &[cells.text(columns.model_year), cells.text(columns.make), cells.text(columns.model)]),
-        when: cells.read(columns.date, "Incident Date", cells::year_month),
-        time_of_day_min: cells.read(columns.time, "Incident Time (24:00)", cells::time_of_day_min),
+        when: cells.read(columns.date, cells::year_month),
+        time_of_day_min: cells.read(columns.time, cells::time_of_day_min),
         place: joined(", ", &[cells.text(columns.city), cells.text(columns.state)]),
-        road: cells.code(Some(columns.road), "Roadway Type", codes::ROAD_TYPES),
+        road: cells.code(columns.road, codes::ROAD_TYPES),
         work_zone: cells.work_zone(columns.work_zone),
         surface: cells.surface(columns),
-        lighting: cells.code(columns.lighting, "Lighting", codes::LIGHTINGS).known(),
+        lighting: cells.code(columns.lighting, codes::LIGHTINGS).known(),
         weather: cells.ticks(&columns.weather, "Weather"),
         // A posted limit of 0 is a slip of the pen.
-        posted_speed_mps: cells
-            .read(columns.posted_speed, "Posted Speed Limit (MPH)", cells::speed_mps)
-            .filter(|limit| *limit > 0.0),
-        partner: cells.code(columns.crash_with, "Crash With", codes::PARTNERS),
-        cp_movement: cells.code(Some(columns.cp_movement), "CP Pre-Crash Movement", codes::MOVEMENTS),
-        sv_movement: cells.code(Some(columns.sv_movement), "SV Pre-Crash Movement", codes::MOVEMENTS),
+        posted_speed_mps: cells.read(columns.posted_speed, cells::speed_mps).filter(|limit| *limit > 0.0),
+        partner: cells.code(columns.crash_with, codes::PARTNERS),
+        cp_movement: cells.code(columns.cp_movement, codes::MOVEMENTS),
+        sv_movement: cells.code(columns.sv_movement, codes::MOVEMENTS),
         sv_speed_mps: cells
-            .read(columns.sv_speed, "SV Precrash Speed (MPH)", cells::speed_mps)
-            .filter(|_| !cells.is_ticked(columns.sv_speed_unknown, "SV Pre-crash Speed - Unknown")),
+            .read(columns.sv_speed, cells::speed_mps)
+            .filter(|_| !cells.is_ticked(columns.sv_speed_unknown)),
         sv_zones: cells.ticks(&columns.sv_zones, "SV Contact Area"),
         cp_zones: cells.ticks(&columns.cp_zones, "CP Contact Area"),
-        severity: cells.code(columns.severity, "Highest Injury Severity Alleged", codes::SEVERITIES),
-        towed: cells.of_vehicles(columns.towed, "Was Vehicle Towed?"),
-        airbags: cells.of_vehicles(columns.airbags, "Any Air Bags Deployed?"),
+        severity: cells.code(columns.severity, codes::SEVERITIES),
+        towed: cells.of_vehicles(columns.towed),
+        airbags: cells.of_vehicles(columns.airbags),
         engagement: cells.engagement(columns),
         narrative,
         redaction,
@@ -116,24 +114,24 @@ struct Cells<'a> {
 }
 
 impl<'a> Cells<'a> {
-    fn bytes(&self, position: Option<usize>) -> &'a [u8] {
-        position.and_then(|position| self.row.get(position)).unwrap_or_default().trim_ascii()
+    fn bytes(&self, column: Column) -> &'a [u8] {
+        column.at.and_then(|at| self.row.get(at)).unwrap_or_default().trim_ascii()
     }
 
-    fn text(&mut self, position: Option<usize>) -> Cow<'a, str> {
-        let (text, windows_1252) = decode(self.bytes(position));
+    fn text(&mut self, column: Column) -> Cow<'a, str> {
+        let (text, windows_1252) = decode(self.bytes(column));
         if windows_1252 {
             self.notes.add_windows_1252();
         }
         text
     }
 
-    fn owned(&mut self, position: Option<usize>) -> String {
-        self.text(position).into_owned()
+    fn owned(&mut self, column: Column) -> String {
+        self.text(column).into_owned()
     }
 
-    fn narrative(&mut self, position: usize) -> String {
-        let text = self.owned(Some(position));
+    fn narrative(&mut self, column: Column) -> String {
+        let text = self.owned(column);
         match mend_twice_encoded(&text) {
             Some(mended) => {
                 self.notes.add_mended();
@@ -143,34 +141,34 @@ impl<'a> Cells<'a> {
         }
     }
 
-    fn code<T: Copy>(&mut self, position: Option<usize>, column: &'static str, table: &codes::Table<T>) -> Coded<T> {
-        let text = self.text(position);
+    fn code<T: Copy>(&mut self, column: Column, table: &codes::Table<T>) -> Coded<T> {
+        let text = self.text(column);
         let coded = codes::look_up(table, &text);
         if let Coded::Unlisted(text) = &coded {
-            self.notes.add(Remark::UnlistedCode, column, text, self.number);
+            self.notes.add(Remark::UnlistedCode, column.name, text, self.number);
         }
         coded
     }
 
-    fn read<T>(&mut self, position: Option<usize>, column: &'static str, reader: fn(&str) -> Cell<T>) -> Option<T> {
-        let text = self.text(position);
+    fn read<T>(&mut self, column: Column, reader: fn(&str) -> Cell<T>) -> Option<T> {
+        let text = self.text(column);
         match reader(&text) {
             Cell::Value(value) => Some(value),
             Cell::Empty => None,
             Cell::Unreadable => {
-                self.notes.add(Remark::Unreadable, column, &text, self.number);
+                self.notes.add(Remark::Unreadable, column.name, &text, self.number);
                 None
             }
         }
     }
 
-    fn is_ticked(&mut self, position: Option<usize>, column: &'static str) -> bool {
-        let bytes = self.bytes(position);
+    fn is_ticked(&mut self, column: Column) -> bool {
+        let bytes = self.bytes(column);
         match cells::ticked(bytes) {
             Cell::Value(()) => true,
             Cell::Empty => false,
             Cell::Unreadable => {
-                self.notes.add(Remark::Unreadable, column, &decode(bytes).0, self.number);
+                self.notes.add(Remark::Unreadable, column.name, &decode(bytes).0, self.number);
                 false
             }
         }
@@ -179,7 +177,7 @@ impl<'a> Cells<'a> {
     fn ticks<T: Copy + PartialEq>(&mut self, columns: &[(usize, T)], group: &'static str) -> Vec<T> {
         let mut all = Vec::new();
         for (position, value) in columns {
-            if self.is_ticked(Some(*position), group) && !all.contains(value) {
+            if self.is_ticked(Column { at: Some(*position), name: group }) && !all.contains(value) {
                 all.push(*value);
             }
         }
@@ -188,40 +186,37 @@ impl<'a> Cells<'a> {
 
     fn work_zone(&mut self, column: WorkZoneColumn) -> bool {
         match column {
-            WorkZoneColumn::Flag(position) => self.is_ticked(Some(position), "Roadway-Work Zone"),
-            WorkZoneColumn::Description(position) => {
-                matches!(
-                    self.code(Some(position), "Roadway Description", codes::ROAD_DESCRIPTIONS),
-                    Coded::Known(codes::RoadDescription::WorkZone)
-                )
+            WorkZoneColumn::Flag(column) => self.is_ticked(column),
+            WorkZoneColumn::Description(column) => {
+                matches!(self.code(column, codes::ROAD_DESCRIPTIONS), Coded::Known(codes::RoadDescription::WorkZone))
             }
         }
     }
 
     /// The third edition ticks a wet surface; where it ticks that nothing was unusual instead, the surface was dry.
     fn surface(&mut self, columns: &Columns) -> Option<Surface> {
-        if columns.surface.is_some() {
-            return self.code(columns.surface, "Roadway Surface", codes::SURFACES).known();
+        if columns.surface.at.is_some() {
+            return self.code(columns.surface, codes::SURFACES).known();
         }
-        if self.is_ticked(columns.surface_wet, "Roadway-Wet Surface Condition") {
+        if self.is_ticked(columns.surface_wet) {
             return Some(Surface::Wet);
         }
-        self.is_ticked(columns.surface_usual, "Roadway-No Unusual Conditions").then_some(Surface::Dry)
+        self.is_ticked(columns.surface_usual).then_some(Surface::Dry)
     }
 
-    fn of_vehicles(&mut self, columns: SidesColumns, column: &'static str) -> OfVehicles {
+    fn of_vehicles(&mut self, columns: SidesColumns) -> OfVehicles {
         match columns {
-            SidesColumns::Both(position) => self.read(Some(position), column, cells::of_vehicles).unwrap_or_default(),
+            SidesColumns::Both(column) => self.read(column, cells::of_vehicles).unwrap_or_default(),
             SidesColumns::Each { sv, cp } => {
-                let mut known = |position| self.code(position, column, codes::YES_OR_NO).known();
+                let mut known = |column| self.code(column, codes::YES_OR_NO).known();
                 OfVehicles { sv: known(sv), cp: known(cp) }
             }
         }
     }
 
     fn engagement(&mut self, columns: &Columns) -> Coded<Engagement> {
-        let system = self.code(columns.engaged, "Automation System Engaged?", codes::ENGAGEMENTS);
-        match self.code(columns.engagement_status, "Engagement Status", codes::ENGAGEMENT_STATUSES) {
+        let system = self.code(columns.engaged, codes::ENGAGEMENTS);
+        match self.code(columns.engagement_status, codes::ENGAGEMENT_STATUSES) {
             Coded::Known(codes::EngagementStatus::NotEngaged) => Coded::Known(Engagement::NotEngaged),
             _ => system,
         }

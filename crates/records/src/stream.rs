@@ -1,6 +1,7 @@
 //! A crash file read from its beginning to its end, with the bytes of the row at hand: a file of 1 GB costs no memory of
 //! its own.
 
+use recrash_model::hash::hexadecimal;
 use sha2::{Digest, Sha256};
 use std::io::{self, Read, Seek, SeekFrom};
 
@@ -19,7 +20,7 @@ pub fn sha256(bytes: &mut dyn Bytes) -> io::Result<String> {
     let mut buffer = vec![0; 1 << 16];
     loop {
         match bytes.read(&mut buffer)? {
-            0 => return Ok(hasher.finalize().iter().map(|byte| format!("{byte:02x}")).collect()),
+            0 => return Ok(hexadecimal(&hasher.finalize())),
             read => hasher.update(&buffer[..read]),
         }
     }

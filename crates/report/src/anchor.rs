@@ -1,7 +1,7 @@
 //! Names of a scenario's file and of its place on the page. Scenario ids are untrusted text, so a name holds only letters that
 //! need no escaping, in a path, an address or markup.
 
-use crate::words;
+use recrash_model::hash::hexadecimal;
 use sha2::{Digest, Sha256};
 
 /// Longest part of a name that is taken over from the id. [characters]
@@ -20,7 +20,7 @@ pub fn stem(scenario_id: &str) -> String {
     }
     let letters = scenario_id.chars().map(|c| c.to_ascii_lowercase());
     let plain: String = letters.filter(|&c| is_plain(c) && c != '.').take(LONGEST).collect();
-    format!("{plain}-{}", words::hexadecimal(&Sha256::digest(scenario_id.as_bytes())[..6]))
+    format!("{plain}-{}", hexadecimal(&Sha256::digest(scenario_id.as_bytes())[..6]))
 }
 
 /// Its place on the page.

@@ -53,11 +53,6 @@ pub fn thousands(n: usize) -> String {
     text
 }
 
-/// Bytes as hexadecimal digits.
-pub fn hexadecimal(bytes: &[u8]) -> String {
-    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
-}
-
 /// Untrusted text made fit to print: control characters replaced, and no longer than `longest` characters.
 pub fn clean(text: &str, longest: usize) -> Cow<'_, str> {
     let odd = |c: char| c.is_control() && !matches!(c, '\n' | '\r' | '\t');

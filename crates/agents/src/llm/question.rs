@@ -1,5 +1,6 @@
 //! Questions to a model and its answers: the nouns of the ledger.
 
+use recrash_model::hash::hexadecimal;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
@@ -128,7 +129,7 @@ fn bounded(text: &str, longest: usize, kept: usize) -> String {
 
 /// SHA-256 in hexadecimal.
 pub(crate) fn sha256(bytes: &[u8]) -> String {
-    Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
+    hexadecimal(&Sha256::digest(bytes))
 }
 
 /// A question with its answer, as the ledger keeps it.

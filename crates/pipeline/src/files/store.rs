@@ -2,6 +2,7 @@
 
 use crate::error::PipelineError;
 use crate::files::json::{from_json, to_json};
+use recrash_model::hash::hexadecimal;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use sha2::{Digest, Sha256};
@@ -307,7 +308,7 @@ pub(crate) fn file_hash(path: &Path) -> Option<String> {
     let mut buffer = vec![0; 1 << 16];
     loop {
         match file.read(&mut buffer).ok()? {
-            0 => return Some(hex(&hasher.finalize())),
+            0 => return Some(hexadecimal(&hasher.finalize())),
             n => hasher.update(&buffer[..n]),
         }
     }
@@ -315,15 +316,7 @@ pub(crate) fn file_hash(path: &Path) -> Option<String> {
 
 /// SHA-256 in hexadecimal.
 pub(crate) fn sha256(content: &[u8]) -> String {
-    hex(&Sha256::digest(content))
-}
-
-fn hex(bytes: &[u8]) -> String {
-    use std::fmt::Write as _;
-    bytes.iter().fold(String::with_capacity(64), |mut text, byte| {
-        let _ = write!(text, "{byte:02x}");
-        text
-    })
+    hexadecimal(&Sha256::digest(content))
 }
 
 pub(crate) fn io(action: &'static str, path: &Path, source: std::io::Error) -> PipelineError {

@@ -11,7 +11,7 @@ use recrash_model::incident::Incident;
 use recrash_model::profile::{Dedupe, RecordRules, SystemProfile, Tells};
 use recrash_model::record::{CrashRecord, RecordSet, RejectReason};
 use recrash_records::{
-    Bytes, Filter, IngestOptions, MAX_MAPPING_BYTES, Mapping, RecordTable, SAMPLE_CSV, SAMPLE_NAME, SourceBytes,
+    Bytes, Filter, IngestOptions, MAX_FILE_BYTES, MAX_MAPPING_BYTES, Mapping, RecordTable, SAMPLE_CSV, SAMPLE_NAME, SourceBytes,
     TableRows, ingest_sources, write_csv,
 };
 use std::borrow::Cow;
@@ -19,9 +19,6 @@ use std::collections::BTreeSet;
 use std::fs::File;
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
-
-/// Crash files larger than this are refused. [bytes]
-const MAX_CRASH_FILE: u64 = 1 << 30;
 
 /// Everything that decides which records come of the first stage, beside the profile.
 pub struct RecordInput {
@@ -44,7 +41,7 @@ impl Content {
         if std::fs::metadata(path).is_ok_and(|there| there.is_file()) {
             return File::open(path).map(Self::File).map_err(|source| io("read", path, source));
         }
-        read_bytes(path, MAX_CRASH_FILE).map(|bytes| Self::Memory(bytes.into()))
+        read_bytes(path, MAX_FILE_BYTES as u64).map(|bytes| Self::Memory(bytes.into()))
     }
 
     fn bytes(&self) -> Box<dyn Bytes + '_> {

@@ -13,12 +13,9 @@ use recrash_model::diagnostic::{Location, Severity};
 use recrash_model::run::JudgedRun;
 use recrash_model::scenario::NOTHING_TO_TEST;
 use recrash_model::{Diagnostic, Outcome};
-use recrash_roads::Scenario;
+use recrash_roads::{MAX_SCENARIO_BYTES, Scenario};
 use recrash_sim::Ego;
 use std::path::Path;
-
-/// Scenario files larger than this are refused. [bytes]
-const MAX_SCENARIO_FILE: u64 = 1 << 20;
 
 /// One scenario file, run.
 #[derive(Debug, Clone, PartialEq)]
@@ -85,7 +82,7 @@ pub fn simulate_file(request: &FileRequest) -> Result<FileRun, PipelineError> {
 /// # Errors
 /// As [`simulate_file`].
 pub fn read_scenario(path: &Path) -> Result<(Scenario, Vec<Diagnostic>), PipelineError> {
-    let text = read_text(path, MAX_SCENARIO_FILE)?;
+    let text = read_text(path, MAX_SCENARIO_BYTES as u64)?;
     match scenario_from(&text) {
         Ok(read) => Ok((read.value, read.diagnostics)),
         Err(diagnostics) => Err(not_runnable(path, diagnostics)),

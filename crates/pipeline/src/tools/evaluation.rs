@@ -28,8 +28,6 @@ use std::path::{Path, PathBuf};
 
 /// Label files larger than this are refused. [bytes]
 const MAX_LABELS: u64 = 1 << 24;
-/// Crash files larger than this are refused. [bytes]
-const MAX_CRASH_FILE: u64 = 1 << 30;
 /// Name of the reader whose accounts `recrash read` shows.
 const READER: &str = "reader";
 /// Names under which `recrash fetch` keeps NHTSA's files.
@@ -266,7 +264,9 @@ fn crash_records(files: &[PathBuf], profile: &SystemProfile) -> Result<Vec<Crash
             Choice::Records,
         ));
     }
-    let files = paths.iter().map(|path| Ok((path.to_string_lossy().into_owned(), read_bytes(path, MAX_CRASH_FILE)?)));
+    let files = paths.iter().map(|path| {
+        Ok((path.to_string_lossy().into_owned(), read_bytes(path, recrash_records::MAX_FILE_BYTES as u64)?))
+    });
     let files = files.collect::<Result<Vec<_>, PipelineError>>()?;
     let sources: Vec<SourceText> = files.iter().map(|(name, bytes)| SourceText { name, bytes }).collect();
     // Labels are of single versions: nothing may be merged away.
