@@ -57,7 +57,8 @@ pub use simulators::external::{
 pub use simulators::{Simulator, SimulatorKind, metadrive_egos, start_simulator};
 pub use stages::{
     AccountSummary, CaseSummary, DesignAttempt, DesignLog, Failure, FallbackReason, ModelSummary, Reviews, RunSummary,
-    SelectionStudy, StageReport, StrategyStudy, Summary, TestedRuns, check_choices, run_stage, unfaithful,
+    SelectionStudy, Shown, StageReport, StrategyStudy, Summary, TestedRuns, check_choices, is_of_failure, missed,
+    run_stage, unfaithful,
 };
 pub use suite::{Permissions, Resources, Stage, Suite};
 pub use tools::accounts::{account_table, write_accounts};
