@@ -1,4 +1,5 @@
-//! Hashes the code of all crates, so that a suite that other code made is made again, whatever its version says.
+//! Hashes the code of all crates and the versions of their dependencies, so that a suite that other code made is made again, whatever its
+//! version says.
 
 #[allow(dead_code, reason = "what is not needed here is needed there")]
 #[path = "../model/src/hash.rs"]
@@ -14,13 +15,19 @@ const BESIDE: [&str; 3] = ["tests", "benches", "examples"];
 const APART: [&str; 3] = ["cli", "fetch", "testing"];
 
 fn main() {
-    let crates = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let here = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let crates = here.join("..");
     let mut hash = Fnv::default();
     for folder in entries(&crates).into_iter().filter(|folder| !is_one_of(folder, &APART)) {
         for part in entries(&folder).into_iter().filter(|part| !is_one_of(part, &BESIDE)) {
             println!("cargo::rerun-if-changed={}", part.display());
             add(&part, &mut hash);
         }
+    }
+    // Of the workspace; a package that is built elsewhere may have it in another folder above, or none.
+    if let Some(lock) = here.ancestors().map(|folder| folder.join("Cargo.lock")).find(|lock| lock.is_file()) {
+        println!("cargo::rerun-if-changed={}", lock.display());
+        add(&lock, &mut hash);
     }
     println!("cargo::rustc-env=RECRASH_CODE={}", hash.hexadecimal());
 }

@@ -40,7 +40,9 @@ mod tests {
 
     #[test]
     fn links_count_and_units_do_not() {
-        let said = |link: &str, line: &str| format!("warning: unresolved link to `{link}`\n --> a.rs:1:2\n  |\n1 | /// {line}\n");
+        let said = |link: &str, line: &str| {
+            format!("warning: unresolved link to `{link}`\n --> a.rs:1:2\n  |\n1 | /// {line}\n")
+        };
         assert!(is_of_units(&said("m/s", "How fast. [m/s]")));
         assert!(!is_of_units(&said("Suite::run_stage", "[`Suite::run_stage`] runs one.")));
         assert!(!is_of_units(&said("gone", "[`gone`] is not here.")));

@@ -160,7 +160,7 @@ pub struct SuiteArgs {
     /// Make anew what was edited by hand; without it, edited files are kept and the stages after them go on from there.
     #[arg(long, help_heading = "What is there already")]
     pub discard_edits: bool,
-    /// Choose the picks anew; without it, those of the last choice stay when records come in.
+    /// Choose the picks anew; without it, those of the last choice stay when records come in, as long as their own can be told.
     #[arg(long, help_heading = "What is there already")]
     pub reselect: bool,
     /// Start the program that the suite names as its ego, and ask the language models it names; without it, only those named here.

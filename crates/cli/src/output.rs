@@ -68,6 +68,9 @@ fn options_for(error: &PipelineError) -> Option<Cow<'static, str>> {
         PipelineError::Choose { choice, .. } => options_of(*choice),
         PipelineError::Busy { .. } | PipelineError::NotASuite { .. } => "--out names the folder",
         PipelineError::OtherSuite { .. } => "--out names the folder; --replace makes this suite in the other's place",
+        PipelineError::ChangedBesideEdit { .. } | PipelineError::NoJournal { .. } => {
+            "--discard-edits makes everything anew, what was edited too"
+        }
         PipelineError::Untrusted { .. } => "--ego names the program; --trust trusts the suite",
         PipelineError::BudgetSpent(_) => "--max-tokens and --max-cost are the caps",
         PipelineError::Threads(_) => "--threads 1 is the least",
@@ -120,8 +123,12 @@ pub fn interrupted(goes_on: bool) {
 
 /// Prints one remark.
 pub fn remark(diagnostic: &Diagnostic) {
-    let edited = diagnostic.code == "suite.edited" && diagnostic.severity == Severity::Warning;
-    let with_option = edited.then(|| diagnostic.clone().with_hint("--discard-edits makes it anew"));
+    let option = match (&*diagnostic.code, diagnostic.severity) {
+        ("suite.edited", Severity::Warning) => Some("--discard-edits makes it anew"),
+        ("select.new-without-pick", _) => Some("--reselect chooses anew"),
+        _ => None,
+    };
+    let with_option = option.map(|option| diagnostic.clone().with_hint(option));
     let diagnostic = with_option.as_ref().unwrap_or(diagnostic);
     match diagnostic.severity {
         Severity::Error => eprintln!("  {} {diagnostic}", red("error")),

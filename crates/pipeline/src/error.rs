@@ -78,6 +78,28 @@ pub enum PipelineError {
         /// The stage that writes it.
         stage: &'static str,
     },
+    /// The same, and the stage keeps what was edited beside it: nothing of it is made again.
+    #[error(
+        "{}: changed by hand, which this file is not for; it belongs to {edited}, which was edited and is kept as it is: put the file back, or          discard the edit",
+        path.display()
+    )]
+    ChangedBesideEdit {
+        /// Which file.
+        path: PathBuf,
+        /// What was edited.
+        edited: String,
+    },
+    /// Nobody knows any more which files of a suite people edited.
+    #[error(
+        "{}: {problem}; without it nobody knows which scenarios and accounts were edited by hand: put it back from a copy, choose another          folder, or discard the edits",
+        path.display()
+    )]
+    NoJournal {
+        /// The journal.
+        path: PathBuf,
+        /// What is wrong with it.
+        problem: String,
+    },
     /// The folder holds a suite of something else, whose results would be lost.
     #[error("{} holds a suite of {what}; choose another folder, or allow that it is replaced", dir.display())]
     OtherSuite {
@@ -222,6 +244,7 @@ impl PipelineError {
             Self::MissingStage { .. }
             | Self::StaleStage { .. }
             | Self::ChangedByHand { .. }
+            | Self::ChangedBesideEdit { .. }
             | Self::NotASuite { .. }
             | Self::OtherSuite { .. }
             | Self::Untrusted { .. }
@@ -231,6 +254,7 @@ impl PipelineError {
             | Self::Choose { .. }
             | Self::Scenario { .. }
             | Self::Damaged { .. }
+            | Self::NoJournal { .. }
             | Self::ModelRefused(_) => 3,
             Self::AnswerPending | Self::WaitingForBatch { .. } | Self::BudgetSpent(_) => 4,
             Self::Missed { .. } => 5,

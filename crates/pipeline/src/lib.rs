@@ -57,8 +57,8 @@ pub use simulators::external::{
 pub use simulators::{Simulator, SimulatorKind, metadrive_egos, start_simulator};
 pub use stages::{
     AccountSummary, CaseSummary, DesignAttempt, DesignLog, Failure, FallbackReason, ModelSummary, Reviews, RunSummary,
-    SelectionStudy, StageReport, StrategyStudy, Summary, TestedRuns, check_choices, must_be_ready, run_stage,
-    unfaithful,
+    SelectionStudy, Shown, StageReport, StrategyStudy, Summary, TestedRuns, check_choices, is_of_failure, missed,
+    must_be_ready, run_stage, unfaithful,
 };
 pub use suite::{MayAsk, Permissions, Resources, Stage, Suite};
 pub use tools::accounts::{Reported, ReportedColumns, account_table, reported_columns, write_accounts};

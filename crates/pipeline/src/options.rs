@@ -159,6 +159,7 @@ impl Options {
         let model_dir = self.model_dir.as_ref().map(|dir| dir.to_string_lossy().into_owned());
         option("model-dir", model_dir.unwrap_or_default(), String::new());
         option("paraphrase", self.cast.paraphrase.clone(), default.cast.paraphrase);
+        option("model-reads", self.cast.reads.name().into(), default.cast.reads.name().into());
         option("design", self.cast.design.clone(), default.cast.design);
         option("tune", self.cast.tune.clone(), default.cast.tune);
         option("rounds", self.cast.rounds.to_string(), default.cast.rounds.to_string());
@@ -216,6 +217,74 @@ fn dedupe_name(dedupe: Dedupe) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::models::cast::Reads;
+
+    #[test]
+    fn the_command_names_every_option() {
+        let default = Options::default();
+        // Whoever adds an option adds it here, and to the command.
+        let Options {
+            records: _,
+            dedupe: _,
+            filter: _,
+            mapping: _,
+            profile: _,
+            budget: _,
+            invent: _,
+            strategy: _,
+            weighting: _,
+            template_weight: _,
+            dimensions: _,
+            restarts: _,
+            embedding: _,
+            model_dir: _,
+            cast: Cast { paraphrase: _, design: _, tune: _, rounds: _, repairs: _, reads: _, review: _ },
+            simulator: _,
+            ego: _,
+            tune_budget: _,
+            searcher: _,
+            aim: _,
+            seed: _,
+        } = &default;
+        let cast = |change: fn(&mut Cast)| {
+            let mut options = Options::default();
+            change(&mut options.cast);
+            options
+        };
+        let name = || "x".to_owned();
+        let others = [
+            ("--records x", Options { records: RecordSource::Files(vec!["x".into()]), ..default.clone() }),
+            ("--dedupe none", Options { dedupe: Some(Dedupe::None), ..default.clone() }),
+            ("--where x", Options { filter: Some(name()), ..default.clone() }),
+            ("--mapping x", Options { mapping: Some("x".into()), ..default.clone() }),
+            ("--profile x", Options { profile: name(), ..default.clone() }),
+            ("--budget all", Options { budget: None, ..default.clone() }),
+            ("--invent", Options { invent: true, ..default.clone() }),
+            ("--strategy kmeans", Options { strategy: Strategy::Kmeans, ..default.clone() }),
+            ("--weighting severity", Options { weighting: Weighting::Severity, ..default.clone() }),
+            ("--template-weight 7", Options { template_weight: 7.0, ..default.clone() }),
+            ("--dimensions 7", Options { dimensions: 7, ..default.clone() }),
+            ("--restarts 7", Options { restarts: 7, ..default.clone() }),
+            ("--embedding minilm", Options { embedding: EmbeddingKind::Minilm, ..default.clone() }),
+            ("--model-dir x", Options { model_dir: Some("x".into()), ..default.clone() }),
+            ("--paraphrase x", cast(|cast| cast.paraphrase = "x".to_owned())),
+            ("--design x", cast(|cast| cast.design = "x".to_owned())),
+            ("--tune x", cast(|cast| cast.tune = "x".to_owned())),
+            ("--rounds 7", cast(|cast| cast.rounds = 7)),
+            ("--repairs 7", cast(|cast| cast.repairs = 7)),
+            ("--model-reads all", cast(|cast| cast.reads = Reads::All)),
+            ("--review x", cast(|cast| cast.review = Some("x".to_owned()))),
+            ("--sim metadrive", Options { simulator: SimulatorKind::Metadrive, ..default.clone() }),
+            ("--ego x", Options { ego: Some(name()), ..default.clone() }),
+            ("--tune-budget 7", Options { tune_budget: 7, ..default.clone() }),
+            ("--searcher x", Options { searcher: name(), ..default.clone() }),
+            ("--aim severity", Options { aim: Aim::Severity, ..default.clone() }),
+            ("--seed 7", Options { seed: 7, ..default.clone() }),
+        ];
+        for (words, options) in others {
+            assert_eq!(options.command(), format!("recrash run {words}"));
+        }
+    }
 
     #[test]
     fn the_command_names_what_differs_from_the_defaults_and_quotes_it() {

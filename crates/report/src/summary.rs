@@ -106,6 +106,8 @@ pub struct Summary {
     pub own_faithful: usize,
     /// Scenarios that tell their own record and whose last run shows something else.
     pub own_unfaithful: usize,
+    /// Scenarios without the run that is held against the record.
+    pub own_not_run: usize,
     /// Scenarios that tell another record and whose last run shows every fact told.
     pub other_faithful: usize,
     /// Scenarios in which a person edited a file.
@@ -148,6 +150,7 @@ impl Summary {
             by_tuning: count(&CaseRow::found_by_tuning),
             own_faithful: count(&|case| tells(case, "own") && answers(case, Answer::Yes)),
             own_unfaithful: count(&|case| tells(case, "own") && answers(case, Answer::No)),
+            own_not_run: count(&|case| case.telling_run().is_none()),
             other_faithful: count(&|case| tells(case, "other") && answers(case, Answer::Yes)),
             edited: count(&|case| !case.edited.is_empty()),
             failed_before: count(&|case| case.first_run().is_some_and(|run| run.failed())),

@@ -35,7 +35,7 @@ pub use study::{budget_table, elbow, stability};
 use recrash_model::profile::SystemProfile;
 use recrash_model::record::RecordSet;
 use recrash_model::selection::{Selection, Strategy, Weighting};
-use recrash_model::{Outcome, Seed};
+use recrash_model::{Diagnostic, Location, Outcome, Seed, Severity};
 
 /// How to choose.
 #[derive(Debug, Clone, PartialEq)]
@@ -158,8 +158,8 @@ pub fn select_with(
     Ok(assemble::selection(records, profile, options, &space, &groups))
 }
 
-/// As [`select_with`], going on from an earlier choice as long as that holds: its picks stay, and records that came in join
-/// them or become picks where there is room. `earlier` holds positions in [`RecordSet::records`], each group's pick first.
+/// As [`select_with`], going on from an earlier choice: its picks stay as long as their records are there, and records that came in
+/// join them or become picks where there is room. `earlier` holds positions in [`RecordSet::records`], each group's pick first.
 ///
 /// # Errors
 /// As [`select_with`].
@@ -171,8 +171,25 @@ pub fn select_onward(
     earlier: &[Vec<usize>],
 ) -> Result<Outcome<Selection>, SelectError> {
     let space = space::ClusteringSpace::new(records, profile, options, embedding)?;
-    let groups = onward::go_on(&space, earlier, options.budget).unwrap_or_else(|| strategy::choose(&space, options));
-    Ok(assemble::selection(records, profile, options, &space, &groups))
+    let Some(onward) = onward::go_on(&space, earlier, options.budget) else {
+        let groups = strategy::choose(&space, options);
+        return Ok(assemble::selection(records, profile, options, &space, &groups));
+    };
+    let mut outcome = assemble::selection(records, profile, options, &space, &onward.groups);
+    outcome.diagnostics.extend(new_without_pick(onward.new_without_pick));
+    Ok(outcome)
+}
+
+/// What there is to say about templates that came in since the last choice, and that none of its picks has.
+fn new_without_pick(count: usize) -> Option<Diagnostic> {
+    let have = match count {
+        0 => return None,
+        1 => "1 new template has".to_owned(),
+        count => format!("{count} new templates have"),
+    };
+    let message = format!("{have} no pick, as those of the last choice stay");
+    let note = Diagnostic::new(Severity::Note, "select.new-without-pick", Location::default(), message);
+    Some(note.with_hint("a new choice, or a larger budget, takes them in"))
 }
 
 /// The narratives of the usable records, in order: what an embedder has to embed.

@@ -4,27 +4,33 @@ use crate::group::{Group, join_nearest};
 use crate::space::ClusteringSpace;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// The groups of an earlier choice with the records of today; `None` where it no longer holds and has to be made anew: a pick
-/// is gone, or a template that nobody stands for has come in.
+/// An earlier choice with the records of today.
+pub(crate) struct Onward {
+    /// Its groups.
+    pub groups: Vec<Group>,
+    /// Templates that came in, and that no pick has.
+    pub new_without_pick: usize,
+}
+
+/// The groups of an earlier choice with the records of today; `None` where none of its picks is there any more.
 ///
 /// Records that came in become picks while there is room in the budget, the first of a template before others; the rest
-/// join the nearest pick, behind who was there. `earlier` holds positions in [`recrash_model::record::RecordSet::records`],
-/// the pick first.
-pub(crate) fn go_on(space: &ClusteringSpace, earlier: &[Vec<usize>], budget: usize) -> Option<Vec<Group>> {
-    if earlier.is_empty() {
+/// join the nearest pick, behind who was there. A pick that is gone leaves room for another one, and its group is as if it had
+/// come in. `earlier` holds positions in [`recrash_model::record::RecordSet::records`], the pick first.
+pub(crate) fn go_on(space: &ClusteringSpace, earlier: &[Vec<usize>], budget: usize) -> Option<Onward> {
+    let row_of: BTreeMap<usize, usize> = space.positions.iter().enumerate().map(|(row, &at)| (at, row)).collect();
+    let rows = |positions: &Vec<usize>| -> Vec<usize> {
+        positions.iter().filter_map(|position| row_of.get(position).copied()).collect()
+    };
+    let has_pick = |positions: &&Vec<usize>| positions.first().is_some_and(|pick| row_of.contains_key(pick));
+    let mut groups: Vec<Group> =
+        earlier.iter().filter(has_pick).map(|positions| Group { members: rows(positions) }).collect();
+    if groups.is_empty() {
         return None;
     }
-    let row_of: BTreeMap<usize, usize> = space.positions.iter().enumerate().map(|(row, &at)| (at, row)).collect();
-    let mut groups = Vec::new();
-    let mut known = BTreeSet::new();
-    for positions in earlier {
-        row_of.get(positions.first()?)?;
-        let members: Vec<usize> = positions.iter().filter_map(|at| row_of.get(at).copied()).collect();
-        known.extend(members.iter().copied());
-        groups.push(Group { members });
-    }
+    let before: BTreeSet<usize> = earlier.iter().flat_map(rows).map(|row| space.template_of[row]).collect();
+    let known: BTreeSet<usize> = groups.iter().flat_map(|group| group.members.iter().copied()).collect();
     let mut covered: BTreeSet<usize> = groups.iter().map(|group| space.template_of[group.pick()]).collect();
-    let before: BTreeSet<usize> = known.iter().map(|&row| space.template_of[row]).collect();
     let mut fresh: Vec<usize> = (0..space.points.rows).filter(|row| !known.contains(row)).collect();
     // Whoever brings a template that nobody has comes first.
     fresh.sort_by_key(|&row| (covered.contains(&space.template_of[row]), row));
@@ -33,10 +39,9 @@ pub(crate) fn go_on(space: &ClusteringSpace, earlier: &[Vec<usize>], budget: usi
         covered.insert(space.template_of[row]);
         groups.push(Group { members: vec![row] });
     }
-    if fresh.iter().any(|&row| !covered.contains(&space.template_of[row]) && !before.contains(&space.template_of[row]))
-    {
-        return None;
-    }
+    let templates: BTreeSet<usize> = fresh.iter().map(|&row| space.template_of[row]).collect();
+    let is_new = |template: &&usize| !covered.contains(*template) && !before.contains(*template);
+    let new_without_pick = templates.iter().filter(is_new).count();
     join_nearest(space, &mut groups, &fresh);
-    Some(groups)
+    Some(Onward { groups, new_without_pick })
 }

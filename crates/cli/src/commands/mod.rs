@@ -50,7 +50,8 @@ Examples:
 Exit codes: 0 done; 1 a file that is there could not be read, or one could not be written; 2 wrong usage;
   3 the input is not there or cannot be used;
   4 the run stopped and the same command goes on: questions wait for a batch, or a cap is reached;
-  5 a share or speed that is asked for was missed, or what simulate and tune ran is not true to its record; 130 interrupted";
+  5 a share or speed that is asked for was missed, or what run, simulate or tune ran is not true to its record,
+    or could not be run; 130 interrupted";
 
 const RUN_EXAMPLES: &str = "\
 Examples:
@@ -65,7 +66,8 @@ Examples:
   recrash run --records ads.csv --review gpt-5-mini --max-cost 2
                                                          a language model reads each replay beside its report
 
-The same command goes on where it was stopped.";
+The same command goes on where it was stopped. Exit code 5: a scenario is not true to its record, or could not be run; the results
+are written all the same.";
 const NARRATE_EXAMPLES: &str = "\
 Examples:
   recrash narrate                                        the picks of suite/, by the rules
@@ -80,7 +82,7 @@ Examples:
   recrash tune paper-suite --searcher halton --tune-budget 500
   recrash tune --aim severity                            the worst contact instead of the nearest failure
 
-Exit code 5: a scenario is not true to its record as tuned; the results are written all the same.";
+Exit code 5: a scenario is not true to its record as tuned, or could not be run; the results are written all the same.";
 const REVIEW_EXAMPLES: &str = "\
 Examples:
   recrash review suite --review gpt-5-mini               the replays of suite/; then recrash report

@@ -8,7 +8,7 @@ use crate::table::{Cell, number, table};
 use recrash_model::account::CrashType;
 use recrash_model::metrics::Answer;
 use recrash_model::review::Review;
-use recrash_pipeline::{AccountSummary, CaseSummary, Reviews, RunSummary, Summary, TestedRuns};
+use recrash_pipeline::{AccountSummary, CaseSummary, Reviews, RunSummary, Shown, Summary, TestedRuns};
 use std::path::Path;
 
 /// Scenarios that the terminal lists; the page and results.csv have all.
@@ -99,12 +99,12 @@ pub fn show(summary: &Summary, accounts: &AccountSummary, dir: &Path) {
     result(summary);
     let whole: usize = accounts.types.iter().map(|share| share.whole).sum();
     sentence(&format!(
-        "records: {} of {} readable incidents reconstructed: {whole} show every stated fact, {} contradict none but leave some undrawn; {} are in \
-         this suite; invented: 0",
+        "records: {} of {} readable incidents reconstructed: {whole} show every stated fact, {} contradict none but leave some undrawn; {}; \
+         invented: 0",
         accounts.told,
         accounts.readable,
         accounts.told.saturating_sub(whole),
-        summary.cases.len(),
+        in_this_suite(&summary.shown()),
     ));
     sentence(&format!("  {}", not_drawn(&accounts.facts)));
     restagings(summary);
@@ -116,6 +116,31 @@ pub fn show(summary: &Summary, accounts: &AccountSummary, dir: &Path) {
         "report: {} (every scenario, crash types, why others are not reconstructed)",
         dir.join("report.html").display()
     );
+}
+
+/// How many scenarios of the suite show their crash by its own runs.
+fn in_this_suite(shown: &Shown) -> String {
+    let Shown { as_told, not_as_told, not_run } = *shown;
+    let all = as_told + not_as_told + not_run;
+    if as_told == all {
+        return format!("{all} are in this suite");
+    }
+    let not_as_told = also(", ", not_as_told, "not as told");
+    format!("{as_told} of the {all} in this suite show it{not_as_told}{}", also(", ", not_run, "not run"))
+}
+
+/// A count with its words, where there is any.
+fn also(before: &str, count: usize, words: &str) -> String {
+    if count > 0 { format!("{before}{count} {words}") } else { String::new() }
+}
+
+/// Why scenarios were not run: the reason of the first.
+fn why_not_run(summary: &Summary) -> String {
+    let first = summary.failures().next();
+    first.map_or_else(String::new, |(_, failure)| {
+        let why: String = failure.to_string().chars().take(LONGEST_WHY).collect();
+        format!("not run ({})", one_line(&why))
+    })
 }
 
 /// What the model made of the replays that changes scenarios.
@@ -255,9 +280,6 @@ fn result(summary: &Summary) {
         ));
     }
     let outside = count(&|case| case.situation_met == Some(false) && case.last_run().is_some_and(|run| run.failed));
-    let also = |before: &str, count: usize, words: &str| {
-        if count > 0 { format!("{before}{count} {words}") } else { String::new() }
-    };
     sentence(&format!(
         "  {} scenarios: {} driven, {} of them never in the situation{}{}{}{}",
         summary.cases.len(),
@@ -266,7 +288,7 @@ fn result(summary: &Summary) {
         also(", where ", outside, "failed in another way"),
         also("; ", unanswered, "driven as reconstructed, with no answer after that"),
         also("; ", parked, "parked, nothing to test"),
-        also("; ", not_run, "not run"),
+        also("; ", not_run, &why_not_run(summary)),
     ));
     if last.beyond_tyres > 0 {
         sentence(&format!(
@@ -305,6 +327,13 @@ fn result(summary: &Summary) {
 mod tests {
     use super::*;
     use recrash_model::cause::Failures;
+
+    #[test]
+    fn a_suite_counts_its_own_runs() {
+        let shown = |as_told, not_as_told, not_run| in_this_suite(&Shown { as_told, not_as_told, not_run });
+        assert_eq!(shown(60, 0, 0), "60 are in this suite");
+        assert_eq!(shown(58, 1, 1), "58 of the 60 in this suite show it, 1 not as told, 1 not run");
+    }
 
     #[test]
     fn failures_come_before_those_that_struck_a_standing_ego_and_who_was_struck_as_it_slowed_is_counted_apart() {

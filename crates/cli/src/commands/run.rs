@@ -19,7 +19,7 @@ use std::path::Path;
 /// Runs every stage.
 ///
 /// # Errors
-/// The first stage's that stops.
+/// The first stage's that stops; a scenario is not true to its record, or could not be run.
 pub fn run(args: &SuiteArgs, output: Output) -> Result<(), PipelineError> {
     let suite = args.open(crate::options::defaults())?;
     output::batch_remarks(&suite, output);
@@ -35,7 +35,8 @@ pub fn run(args: &SuiteArgs, output: Output) -> Result<(), PipelineError> {
             output::remarks(&report);
         }
     }
-    finish(&suite, output)
+    let summary = finish(&suite, output)?;
+    summary.missed(&suite)?.map_or(Ok(()), |what| Err(PipelineError::Missed { what }))
 }
 
 /// Writes the report of a suite.
@@ -45,10 +46,10 @@ pub fn run(args: &SuiteArgs, output: Output) -> Result<(), PipelineError> {
 pub fn report(args: &StageArgs, output: Output) -> Result<(), PipelineError> {
     let suite = args.suite().open_saved()?;
     run_stage(&suite, Stage::Report, &*output.progress())?;
-    finish(&suite, output)
+    finish(&suite, output).map(drop)
 }
 
-fn finish(suite: &Suite, output: Output) -> Result<(), PipelineError> {
+fn finish(suite: &Suite, output: Output) -> Result<Summary, PipelineError> {
     let summary: Summary = suite.store().read_json("summary.json")?;
     if output.json {
         output::json(&summary);
@@ -56,11 +57,10 @@ fn finish(suite: &Suite, output: Output) -> Result<(), PipelineError> {
         show(&summary, suite.store().dir());
         spent(suite);
     }
-    match summary.cases.iter().find_map(|case| case.failure.as_ref()) {
-        Some(failure) if summary.run() == 0 => {
-            Err(PipelineError::bad_input(format!("no scenario could be run; the first: {failure}")))
-        }
-        _ => Ok(()),
+    let first = summary.failures().next().filter(|_| summary.run() == 0).map(|(_, failure)| failure.to_string());
+    match first {
+        Some(why) => Err(PipelineError::bad_input(format!("no scenario could be run; the first: {why}"))),
+        None => Ok(summary),
     }
 }
 

@@ -21,7 +21,7 @@ Examples:
   recrash simulate scenario.json --ego recorded --picture scenario.svg
   recrash simulate scenario.json --ego recorded --words  the replay for a reader without a picture
 
-Exit code 5: a scenario of the suite is not true to its record; the results are written all the same.";
+Exit code 5: a scenario of the suite is not true to its record, or could not be run; the results are written all the same.";
 
 /// Options of `simulate`.
 #[derive(Debug, Clone, Args)]

@@ -3,7 +3,7 @@
 use crate::options::SuiteArgs;
 use crate::output::{self, Output};
 use crate::screen::{eprintln, println};
-use recrash_pipeline::{PipelineError, Stage, Suite, check_choices, run_stage, unfaithful};
+use recrash_pipeline::{PipelineError, Stage, Suite, check_choices, is_of_failure, missed, run_stage, unfaithful};
 
 /// The command of the stage that comes then.
 fn next(stage: &str) -> Option<&'static str> {
@@ -33,18 +33,21 @@ pub fn run(args: &SuiteArgs, stages: &[Stage], output: Output) -> Result<(), Pip
     }
     output::batch_remarks(&suite, output);
     check_choices(&suite)?;
-    let (mut done, mut skipped, mut lost) = (0, 0, Vec::new());
+    let (mut done, mut skipped, mut not_run, mut lost) = (0, 0, 0, Vec::new());
     for &stage in stages {
         let report = run_stage(&suite, stage, &*output.progress())?;
         (done, skipped) = (done + report.done, skipped + report.skipped);
         lost.extend(unfaithful(&suite, stage)?);
+        not_run += report.diagnostics.iter().filter(|remark| runs_the_ego(stage) && is_of_failure(remark)).count();
         if !output.json && !output.quiet {
             output::remarks(&report);
         }
     }
     let name = stages.first().map_or("", |stage| stage.name());
     if output.json {
-        output::json(&serde_json::json!({ "stage": name, "done": done, "skipped": skipped, "unfaithful": lost }));
+        output::json(
+            &serde_json::json!({ "stage": name, "done": done, "skipped": skipped, "not_run": not_run, "unfaithful": lost }),
+        );
     } else if !output.quiet {
         output::remark_list(&lost, "told by --json");
         let dir = suite.store().dir().display();
@@ -53,10 +56,10 @@ pub fn run(args: &SuiteArgs, stages: &[Stage], output: Output) -> Result<(), Pip
             println!("next: recrash {next} {dir}");
         }
     }
-    match lost.len() {
-        0 => Ok(()),
-        lost => Err(PipelineError::Missed {
-            what: format!("{lost} scenarios are not true to the records they tell; the results are written"),
-        }),
-    }
+    missed(lost.len(), not_run).map_or(Ok(()), |what| Err(PipelineError::Missed { what }))
+}
+
+/// Whether a scenario that this stage fails on could not be run.
+fn runs_the_ego(stage: Stage) -> bool {
+    matches!(stage, Stage::Simulate | Stage::Tune | Stage::Triage)
 }

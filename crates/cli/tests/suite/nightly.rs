@@ -451,6 +451,14 @@ fn evidence_is_of_the_runs_that_are_given() {
     let (code, _, errors) = evidence("metadrive-idm", "other");
     assert!(code == 3 && errors.contains("the results are no evidence"), "{errors}");
     assert!(!place.path("other").exists(), "no half of a folder is in the way of the next try");
+    std::fs::create_dir(place.path("mine")).unwrap();
+    let (code, _, errors) = evidence("idmm", "mine");
+    assert!(code == 3 && errors.contains("idmm"), "{errors}");
+    assert!(place.path("mine").is_dir(), "the user's empty folder stays");
+    assert_eq!(evidence("idm", "mine").0, 0);
+    assert!(place.path("mine/manifest.json").is_file());
+    let left = std::fs::read_dir(place.folder()).unwrap().map(|entry| entry.unwrap().file_name());
+    assert_eq!(left.filter(|name| name.to_string_lossy().starts_with('.')).count(), 0);
     let (code, _, errors) = evidence("idm", "evidence");
     assert!(code == 3 && errors.contains("it holds something else"), "{errors}");
     assert_eq!(place.run(&["robustness", "frozen", "--tries", "1", "--out", "of-another.json", "--quiet"]).0, 0);

@@ -18,24 +18,25 @@ const MAX_SUITE_FILE: u64 = 1 << 30;
 /// First letters of the names of files that are being written.
 pub(crate) const TEMPORARY_PREFIX: &str = ".recrash-";
 
-/// Files that are being written under another name.
+/// Files and folders that are being written under another name.
 static UNFINISHED: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
 
 fn unfinished() -> MutexGuard<'static, BTreeSet<PathBuf>> {
     UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Removes every file that is being written, for a program that is interrupted and ends: nothing is begun afterwards.
+/// Removes every file and folder that is being written, for a program that is interrupted and ends: nothing is begun afterwards.
 pub fn remove_unfinished() {
     let files = unfinished();
     for file in files.iter() {
         // Whoever interrupts wants the end, not a word about a file.
-        let _ = fs::remove_file(file);
+        let is_folder = fs::symlink_metadata(file).is_ok_and(|is| is.file_type().is_dir());
+        let _ = if is_folder { fs::remove_dir_all(file) } else { fs::remove_file(file) };
     }
     std::mem::forget(files);
 }
 
-/// A file that is being written, as long as this lives.
+/// A file or folder that is being written, as long as this lives.
 pub(crate) struct Unfinished(PathBuf);
 
 impl Unfinished {
@@ -161,7 +162,12 @@ impl Store {
     pub(crate) fn append(&self, name: &str, lines: &[u8]) -> Result<(), PipelineError> {
         let path = self.inside(name)?;
         refuse_special(&path)?;
-        let add = || fs::OpenOptions::new().create(true).append(true).open(&path)?.write_all(lines);
+        let add = || {
+            let mut file = fs::OpenOptions::new().create(true).append(true).open(&path)?;
+            let before = file.metadata()?.len();
+            // Half a line, on a disk that is full, would become the beginning of the next one.
+            file.write_all(lines).inspect_err(|_| drop(file.set_len(before)))
+        };
         add().map_err(|source| io("write", &path, source))
     }
 

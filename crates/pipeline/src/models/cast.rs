@@ -52,6 +52,16 @@ pub enum Reads {
     All,
 }
 
+impl Reads {
+    /// As it is typed.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Unread => "unread",
+            Self::All => "all",
+        }
+    }
+}
+
 fn default_repairs() -> usize {
     REPAIRS
 }

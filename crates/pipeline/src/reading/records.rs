@@ -11,8 +11,8 @@ use recrash_model::incident::Incident;
 use recrash_model::profile::{Dedupe, RecordRules, SystemProfile, Tells};
 use recrash_model::record::{CrashRecord, RecordSet, RejectReason};
 use recrash_records::{
-    Bytes, Filter, IngestOptions, MAX_FILE_BYTES, MAX_MAPPING_BYTES, Mapping, RecordTable, SAMPLE_CSV, SAMPLE_NAME, SourceBytes,
-    TableRows, ingest_sources, write_csv,
+    Bytes, Filter, IngestOptions, MAX_FILE_BYTES, MAX_MAPPING_BYTES, Mapping, RecordTable, SAMPLE_CSV, SAMPLE_NAME,
+    SourceBytes, TableRows, ingest_sources, write_csv,
 };
 use std::borrow::Cow;
 use std::collections::BTreeSet;

@@ -64,6 +64,13 @@ pub(crate) fn at(suite: &Suite, id: &str, stage: Stage) -> Option<Failure> {
 /// # Errors
 /// A file of the suite cannot be read.
 pub fn unfaithful(suite: &Suite, stage: Stage) -> Result<Vec<Diagnostic>, PipelineError> {
+    let selection: Selection = suite.store().read_json(names::SELECTION)?;
+    let ids: Vec<&str> = selection.clusters.iter().map(|cluster| cluster.scenario_id.as_str()).collect();
+    unfaithful_among(suite, stage, &ids)
+}
+
+/// The same among these scenarios.
+pub(super) fn unfaithful_among(suite: &Suite, stage: Stage, ids: &[&str]) -> Result<Vec<Diagnostic>, PipelineError> {
     let file: fn(&str) -> String = match (stage, suite.profile().records.tells) {
         (Stage::Simulate, Tells::Templates) => names::first_run,
         (Stage::Triage, Tells::Templates) => names::tuned_run,
@@ -71,16 +78,14 @@ pub fn unfaithful(suite: &Suite, stage: Stage) -> Result<Vec<Diagnostic>, Pipeli
         (Stage::Simulate, Tells::Accounts) => names::recorded_run,
         _ => return Ok(Vec::new()),
     };
-    let selection: Selection = suite.store().read_json(names::SELECTION)?;
-    let ids: Vec<&String> = selection.clusters.iter().map(|cluster| &cluster.scenario_id).collect();
-    let judged = |id: &&String| -> Result<Option<Diagnostic>, PipelineError> {
+    let judged = |id: &&str| -> Result<Option<Diagnostic>, PipelineError> {
         if !suite.store().path(&file(id)).exists() {
             return Ok(None);
         }
         let run: JudgedRun = suite.store().read_json(&file(id))?;
         let remark = || {
             let why = RunSummary::new(&run).unfaithful.join("; ");
-            let location = Location { file: Some((*id).clone()), ..Location::default() };
+            let location = Location { file: Some((*id).to_owned()), ..Location::default() };
             Diagnostic::new(Severity::Warning, "scenario.unfaithful", location, format!("not faithful: {why}"))
         };
         Ok((run.faithful() == Answer::No).then(remark))
@@ -89,8 +94,29 @@ pub fn unfaithful(suite: &Suite, stage: Stage) -> Result<Vec<Diagnostic>, Pipeli
     Ok(all.into_iter().flatten().collect())
 }
 
+/// What a run is told to have missed; nothing where every scenario was run and is true to its record.
+pub fn missed(unfaithful: usize, not_run: usize) -> Option<String> {
+    let scenarios = |count: usize| if count == 1 { "1 scenario".to_owned() } else { format!("{count} scenarios") };
+    let unfaithful = match unfaithful {
+        0 => None,
+        1 => Some("1 scenario is not true to the record it tells".to_owned()),
+        count => Some(format!("{count} scenarios are not true to the records they tell")),
+    };
+    let not_run = (not_run > 0).then(|| format!("{} could not be run", scenarios(not_run)));
+    let both: Vec<String> = unfaithful.into_iter().chain(not_run).collect();
+    (!both.is_empty()).then(|| format!("{}; the results are written", both.join(", and ")))
+}
+
+/// Whether a remark of a stage is about a scenario that could not be made or run.
+pub fn is_of_failure(remark: &Diagnostic) -> bool {
+    remark.code == FAILED
+}
+
+/// Name of remarks on scenarios that could not be made or run.
+const FAILED: &str = "scenario.failed";
+
 /// For people.
 pub(crate) fn remark(id: &str, failure: &Failure) -> Diagnostic {
     let location = Location { file: Some(id.to_owned()), ..Location::default() };
-    Diagnostic::new(Severity::Warning, "scenario.failed", location, failure.to_string())
+    Diagnostic::new(Severity::Warning, FAILED, location, failure.to_string())
 }

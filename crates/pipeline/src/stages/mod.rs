@@ -32,12 +32,12 @@ mod view;
 pub(crate) use cases::Cases;
 pub use choices::{check_choices, must_be_ready};
 pub use design_log::{DesignAttempt, DesignLog};
-pub use failures::{Failure, unfaithful};
+pub use failures::{Failure, is_of_failure, missed, unfaithful};
 pub(crate) use restage::question as restage_question;
 pub(crate) use review::Beside;
 pub use run_summary::RunSummary;
 pub use select::{SelectionStudy, StrategyStudy};
-pub use summary::{AccountSummary, CaseSummary, FallbackReason, ModelSummary, Reviews, Summary, TestedRuns};
+pub use summary::{AccountSummary, CaseSummary, FallbackReason, ModelSummary, Reviews, Shown, Summary, TestedRuns};
 
 use crate::error::PipelineError;
 use crate::models::cast::RULES;

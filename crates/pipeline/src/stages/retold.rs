@@ -42,7 +42,8 @@ pub(super) const DECLARED: [CaseStage; 5] = [
         stage: Stage::Design,
         reads: |id| vec![(Stage::Narrate, names::account(id))],
         editable: |id| vec![names::scenario(id)],
-        decides: |suite| Ok(vec![player(suite, &suite.options().cast.design)]),
+        // The seed stands in the scenario's source.
+        decides: |suite| Ok(vec![player(suite, &suite.options().cast.design), text_of(&suite.options().seed)]),
         runs_ego: false,
         work: design,
     },

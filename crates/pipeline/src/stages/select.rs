@@ -139,7 +139,7 @@ impl Choice<'_> {
             return Vec::new();
         };
         let at: BTreeMap<String, usize> = names_of(records).into_iter().zip(0..).collect();
-        // A pick that is gone stays as a place that no record has, which ends the earlier choice.
+        // A pick that is gone stays as a place that no record has, so that its group is known to have none.
         let place = |(number, name): (usize, &String)| match at.get(name) {
             None if number == 0 => Some(usize::MAX),
             found => found.copied(),

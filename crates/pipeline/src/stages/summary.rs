@@ -1,12 +1,13 @@
 //! What a person is told at the end of a run.
 
-use super::failures::Failure;
+use super::failures::{Failure, missed, unfaithful_among};
 use super::made::Case;
 use super::run_summary::RunSummary;
 use super::{Cases, DesignLog};
+use crate::error::PipelineError;
 use crate::models::cast::{AgentLog, Cast, RULES};
 use crate::options::RecordSource;
-use crate::suite::Suite;
+use crate::suite::{Stage, Suite};
 use recrash_agents::llm::Role;
 use recrash_lab::coverage::{Incident, Tested, coverage};
 use recrash_model::account::{AccountSet, CrashType, FactShare, TypeShare, Untold};
@@ -22,7 +23,7 @@ use recrash_model::template::Template;
 use recrash_model::triage::{FailureClass, Triage};
 use recrash_report::Changed;
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// A whole run in numbers (`summary.json`, and `recrash run --json`).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -252,7 +253,51 @@ pub struct TestedRuns {
     pub beyond_tyres: usize,
 }
 
+/// Scenarios of a suite by whether the run that is held against the record shows its crash.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Shown {
+    /// No told fact is shown otherwise.
+    pub as_told: usize,
+    /// Told facts are shown otherwise: a person edited it, or the rules found no better.
+    pub not_as_told: usize,
+    /// There is no such run.
+    pub not_run: usize,
+}
+
 impl Summary {
+    /// Scenarios by whether their own run shows the crash.
+    pub fn shown(&self) -> Shown {
+        let count = |holds: fn(&CaseSummary) -> bool| self.cases.iter().filter(|case| holds(case)).count();
+        let not_as_told = count(|case| case.faithful() == Some(Answer::No));
+        let not_run = count(|case| case.recorded.is_none() && case.tuned.is_none());
+        Shown { as_told: self.cases.len() - not_as_told - not_run, not_as_told, not_run }
+    }
+
+    /// Scenarios that could not be made or run to the end.
+    pub fn failures(&self) -> impl Iterator<Item = (&CaseSummary, &Failure)> {
+        self.cases.iter().filter_map(|case| Some((case, case.failure.as_ref()?)))
+    }
+
+    /// What of this run is not as it is asked for, in the terms of the commands that run one stage: scenarios that are not true to the
+    /// records they tell, and such as could not be run.
+    ///
+    /// # Errors
+    /// A file of the suite cannot be read.
+    pub fn missed(&self, suite: &Suite) -> Result<Option<String>, PipelineError> {
+        // What was edited after the search is another run than the one that is summed up here.
+        let edited: Vec<&str> =
+            self.cases.iter().filter(|case| !case.edited.is_empty()).map(|case| case.id.as_str()).collect();
+        let mut lost: BTreeSet<&str> = BTreeSet::new();
+        lost.extend(self.cases.iter().filter(|case| case.faithful() == Some(Answer::No)).map(|case| case.id.as_str()));
+        let mut told = Vec::new();
+        for stage in [Stage::Simulate, Stage::Triage] {
+            told.extend(unfaithful_among(suite, stage, &edited)?);
+        }
+        lost.extend(told.iter().filter_map(|remark| remark.location.file.as_deref()));
+        let not_run = self.failures().filter(|(_, failure)| failure.stage != Stage::Review.name()).count();
+        Ok(missed(lost.len(), not_run))
+    }
+
     /// Scenarios of their own record, and of another one, whose tuned run gives this answer to whether it is true to it.
     /// An invented one has no record to be true to.
     pub fn faithful(&self, answer: Answer) -> [usize; 2] {

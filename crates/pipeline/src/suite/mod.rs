@@ -11,19 +11,19 @@ use crate::models::cast::RULES;
 use crate::simulators::external::{self, EgoCommand, FILES_UNKNOWN, Patience, default_python};
 
 use crate::files::json::to_json;
-use crate::files::store::{Store, WriteFile, sha256, write_suite_file};
+use crate::files::store::{Store, TEMPORARY_PREFIX, WriteFile, sha256, write_suite_file};
 use crate::models::{AnswerMode, ModelAccess, Models};
 use crate::options::{Options, RecordSource};
 use crate::reading::records;
 use crate::reading::retelling::Stagings;
 use crate::simulators::{Simulator, start_simulator};
-use journal::{Journal, Made, Unit};
-use names::is_failure_file;
+use journal::{Begun, Journal, Made, Unit};
+use names::{EDITABLE_FOLDERS, is_failure_file};
 use recrash_agents::llm::Spent;
 use recrash_model::profile::SystemProfile;
 use recrash_model::{Diagnostic, Location, Seed, Severity};
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs::{File, TryLockError};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
@@ -263,11 +263,13 @@ impl Suite {
         let store = Store::create(dir, write_file)?;
         let folder = is_new.then(|| MadeFolder(dir.to_owned()));
         let lock = lock_folder(dir)?;
-        if before.is_none() && !is_empty(&store)? {
+        if before.is_none() && !is_empty(dir)? {
             return Err(PipelineError::NotASuite { dir: dir.to_owned() });
         }
-        store.remove_leftovers()?;
-        let mut journal = Journal::read(&store)?;
+        let mut journal = read_journal(&store, resources.permissions.discard_edits)?;
+        if before.is_some() {
+            store.remove_leftovers()?;
+        }
         journal.tidy(&store)?;
         let saved = Mutex::new(before.as_ref() == Some(&options));
         Ok(Self { saved, _folder: folder, ..Self::set_up(store, options, resources, journal, lock)? })
@@ -452,7 +454,7 @@ impl Suite {
         if let Some(unit) = &before {
             let is_current = unit.inputs == inputs;
             let changed = self.changed(unit);
-            let edited = changed.iter().any(|file| self.is_edit(file, work.editable));
+            let edited = changed.iter().any(|file| self.is_edit(work.name, file, work.editable));
             if edited && !self.permissions.discard_edits {
                 self.save()?;
                 return Ok(if is_current { Course::Edited } else { Course::EditedAndOld });
@@ -464,19 +466,59 @@ impl Suite {
                 return Ok(Course::Skipped);
             }
         }
-        let mut outputs = BTreeMap::new();
         let files = make()?;
         self.save()?;
+        self.write_unit(work, before.as_ref(), inputs, files)
+    }
+
+    /// Writes the files of a unit, and removes what it wrote before and does not any more. The journal says what is about to be written
+    /// first: a program that ends in between leaves unfinished work, and no edits.
+    fn write_unit(
+        &self,
+        work: &Work,
+        before: Option<&Unit>,
+        inputs: String,
+        files: Files,
+    ) -> Result<Course, PipelineError> {
+        let of_others = self.of_others(work, before, &files);
+        // What unfinished work left behind goes as well.
+        let left = self.lock().begun(work.name).cloned().unwrap_or_default().into_iter();
+        let mut writing: Begun = left.filter(|(file, hash)| hash.is_none() || self.store.hash(file) == *hash).collect();
+        let left: Vec<String> = writing.keys().cloned().collect();
+        let hash = |file: &String, content: &[u8]| work.editable.contains(file).then(|| sha256(content));
+        writing.extend(files.iter().map(|(file, content)| (file.clone(), hash(file, content))));
+        self.lock().begin(&self.store, work.name, writing)?;
+        let mut outputs = BTreeMap::new();
         for (file, content) in files {
-            let hash = self.store.write(&file, &content)?;
-            let (size, changed_ns) = self.store.stamp(&file).unwrap_or_default();
-            outputs.insert(file, Made { hash, size, changed_ns });
+            let made = if of_others.contains(&file) {
+                Made { hash: sha256(&content), size: content.len() as u64, changed_ns: 0 }
+            } else {
+                let hash = self.store.write(&file, &content)?;
+                let (size, changed_ns) = self.store.stamp(&file).unwrap_or_default();
+                Made { hash, size, changed_ns }
+            };
+            outputs.insert(file, made);
         }
-        for stale in before.iter().flat_map(|unit| unit.outputs.keys()).filter(|file| !outputs.contains_key(*file)) {
-            self.store.remove(stale)?;
+        let stale = before.iter().flat_map(|unit| unit.outputs.keys()).chain(&left);
+        for file in stale.filter(|file| !outputs.contains_key(*file)) {
+            self.store.remove(file)?;
         }
         self.lock().note(&self.store, work.name, Unit { inputs, outputs })?;
-        Ok(Course::Done)
+        Ok(if of_others.is_empty() { Course::Done } else { Course::Edited })
+    }
+
+    /// Files in the place of those that a unit is about to write which no run wrote, as far as is known: they are a person's, and are kept.
+    fn of_others(&self, work: &Work, before: Option<&Unit>, files: &Files) -> BTreeSet<String> {
+        let is_other = |file: &String, content: &[u8]| {
+            let is_known = before.is_some_and(|unit| unit.outputs.contains_key(file));
+            !is_known
+                && self.is_edit(work.name, file, work.editable)
+                && self.store.hash(file).is_some_and(|hash| hash != sha256(content))
+        };
+        if self.permissions.discard_edits {
+            return BTreeSet::new();
+        }
+        files.iter().filter(|(file, content)| is_other(file, content)).map(|(file, _)| file.clone()).collect()
     }
 
     /// Whether a file still is what its unit wrote.
@@ -495,9 +537,15 @@ impl Suite {
         unit.outputs.iter().filter(|(file, made)| !self.is_as_made(file, made)).map(|(file, _)| file).collect()
     }
 
-    /// Whether a changed file is a person's edit: of what may be edited, and not gone.
-    fn is_edit(&self, changed: &String, editable: &[String]) -> bool {
-        editable.contains(changed) && self.store.stamp(changed).is_some()
+    /// Whether a changed file is a person's edit: of what may be edited, not gone, and not what a run was writing when it ended.
+    fn is_edit(&self, unit: &str, changed: &String, editable: &[String]) -> bool {
+        editable.contains(changed) && self.store.stamp(changed).is_some() && !self.is_unfinished(unit, changed)
+    }
+
+    /// Whether a file is what its unit was writing when it ended.
+    fn is_unfinished(&self, unit: &str, file: &str) -> bool {
+        let hash = self.lock().begun(unit).and_then(|files| files.get(file).cloned()).flatten();
+        hash.is_some() && self.store.hash(file) == hash
     }
 
     /// Whether a finished unit wrote this file.
@@ -507,13 +555,9 @@ impl Suite {
 
     /// Files of a finished unit that a person edited; none of an unfinished one.
     pub(crate) fn edited(&self, unit: &str, editable: &[String]) -> Vec<String> {
-        let unit = self.lock().get(unit).cloned();
-        let edits = |unit: Unit| {
-            let may_be = unit.outputs.iter().filter(|(file, _)| editable.contains(file));
-            let changed = may_be.filter(|(file, made)| !self.is_as_made(file, made) && self.is_edit(file, editable));
-            changed.map(|(file, _)| file.clone()).collect()
-        };
-        unit.map_or_else(Vec::new, edits)
+        let Some(made) = self.lock().get(unit).cloned() else { return Vec::new() };
+        let changed = self.changed(&made);
+        changed.into_iter().filter(|file| self.is_edit(unit, file, editable)).cloned().collect()
     }
 
     /// Forgets the units of a stage that are not among `names`, and removes their files but those a person edited, which
@@ -529,8 +573,7 @@ impl Suite {
         let mut remarks = Vec::new();
         for name in all.iter().filter(|unit| !names.contains(unit)) {
             let edited = self.edited(name, &editable(name.strip_prefix(&prefix).unwrap_or(name)));
-            let Some(unit) = self.lock().forget(&self.store, name)? else { continue };
-            for file in unit.outputs.keys() {
+            for file in &self.written_by(name) {
                 if edited.contains(file) && !self.permissions.discard_edits {
                     let message = "is no longer part of the suite; it was edited by hand, and is kept";
                     let location = Location { file: Some(file.clone()), ..Location::default() };
@@ -539,8 +582,21 @@ impl Suite {
                     self.store.remove(file)?;
                 }
             }
+            // At last: where the program ends before, the rest is removed the next time.
+            self.lock().forget(&self.store, name)?;
         }
         Ok(remarks)
+    }
+
+    /// Files that a unit wrote, or was writing when it ended.
+    fn written_by(&self, name: &str) -> BTreeSet<String> {
+        let journal = self.lock();
+        let made = journal.get(name).into_iter().flat_map(|unit| unit.outputs.keys());
+        let begun = journal.begun(name).into_iter().flatten().filter(|(file, hash)| match hash {
+            Some(hash) => self.store.hash(file).as_ref() == Some(hash),
+            None => true,
+        });
+        made.chain(begun.map(|(file, _)| file)).cloned().collect()
     }
 
     /// Hash of a file that a finished unit wrote, as it is now: a person may have edited it.
@@ -568,13 +624,18 @@ impl Suite {
         };
         let changed = self.changed(&unit);
         let (edited, spoiled): (Vec<&String>, _) =
-            changed.into_iter().partition(|file| self.is_edit(file, work.editable));
+            changed.into_iter().partition(|file| self.is_edit(work.name, file, work.editable));
         if unit.inputs != hash_all(work.inputs) && edited.is_empty() {
             return Err(self.stale(stage));
         }
-        match spoiled.first() {
-            Some(file) => Err(PipelineError::ChangedByHand { path: self.store.path(file), stage: stage.name() }),
-            None => Ok(()),
+        match (spoiled.first(), edited.first()) {
+            (None, _) => Ok(()),
+            (Some(file), None) => {
+                Err(PipelineError::ChangedByHand { path: self.store.path(file), stage: stage.name() })
+            }
+            (Some(file), Some(&edited)) => {
+                Err(PipelineError::ChangedBesideEdit { path: self.store.path(file), edited: edited.clone() })
+            }
         }
     }
 
@@ -659,14 +720,27 @@ fn read_saved(store: &Store) -> Result<Saved, PipelineError> {
     serde_json::from_value(saved).map_err(|error| unusable(error.to_string()))
 }
 
-fn is_empty(store: &Store) -> Result<bool, PipelineError> {
-    store.remove_leftovers()?;
-    let mut entries = std::fs::read_dir(store.dir()).map_err(|source| PipelineError::Io {
-        action: "read",
-        path: store.dir().to_owned(),
-        source,
-    })?;
-    Ok(entries.next().is_none())
+/// The journal of a folder that is about to be worked in. Where it is gone although there is work that people may have edited, nothing is
+/// written over that unless the caller says so.
+fn read_journal(store: &Store, discard_edits: bool) -> Result<Journal, PipelineError> {
+    match Journal::read(store) {
+        Err(_) if discard_edits => Ok(Journal::anew()),
+        Ok(journal) if journal.is_empty() && !discard_edits => {
+            match EDITABLE_FOLDERS.into_iter().find(|folder| !is_empty(&store.path(folder)).unwrap_or(true)) {
+                Some(folder) => Err(journal::lost(store, format!("it is gone, though there are files in {folder}/"))),
+                None => Ok(journal),
+            }
+        }
+        read => read,
+    }
+}
+
+/// Whether there is nothing in a folder but what is being written, or was when a program was killed.
+fn is_empty(folder: &Path) -> Result<bool, PipelineError> {
+    let failed = |source| PipelineError::Io { action: "read", path: folder.to_owned(), source };
+    let mut entries = std::fs::read_dir(folder).map_err(failed)?;
+    let is_ours = |entry: std::fs::DirEntry| entry.file_name().to_string_lossy().starts_with(TEMPORARY_PREFIX);
+    Ok(entries.all(|entry| entry.is_ok_and(is_ours)))
 }
 
 /// One hash of several inputs and of the code of this program.

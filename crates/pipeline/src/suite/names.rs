@@ -31,6 +31,9 @@ pub const RESULTS: &str = "results.csv";
 /// Everything a person is told at the end.
 pub const SUMMARY: &str = "summary.json";
 
+/// Folders with files that people may edit.
+pub const EDITABLE_FOLDERS: [&str; 3] = ["3-narratives", "4-scenarios", "6-tuned"];
+
 /// Ending of files that say why a scenario went no further.
 const FAILURE: &str = ".failed.json";
 

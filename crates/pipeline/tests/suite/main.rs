@@ -4,3 +4,4 @@ mod external_ego;
 mod full_disk;
 mod parity;
 mod pictures;
+mod remaking;

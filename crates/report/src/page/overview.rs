@@ -2,7 +2,7 @@
 
 use super::parts::{self, missing};
 use super::{Context, corpus, icon, types};
-use crate::summary::{Result, Tested};
+use crate::summary::{Result, Summary, Tested};
 use crate::view::{CaseRow, RunRow};
 use crate::words::{self, fixed, thousands};
 use crate::{anchor, search, thumbnail};
@@ -79,6 +79,7 @@ fn account_sentence(context: &Context, accounts: &AccountSet) -> Markup {
         b { (thousands(accounts.told.len())) " of " (thousands(accounts.readable)) } " readable incidents are reconstructed: no stated fact is contradicted, and nothing that the two did is left out. "
         (thousands(accounts.types.iter().map(|share| share.whole).sum())) " show every stated fact. Stated is what the program read in a report; it cannot notice its own misreadings. "
         @if s.cases < accounts.told.len() { b { (thousands(s.cases)) } " were selected. " } @else { "All of them are here. " }
+        (not_shown_here(s))
         b { (words::clean(&suite.ego, 60)) } " drove " (thousands(first.ran)) " of them from the handover on, and got into the reported situation in " b { (thousands(first.met)) } ". As reconstructed it fails "
         b { (thousands(first.failures.total())) " of those " (thousands(first.met)) } @if first.failures.total() > 0 { ": " (manners(first.failures)) } ". (What the ego drove has seldom to do with being struck while it stands, and little with being struck from behind.) "
         @if s.tuned { "After tuning, within what the reports leave open, it fails " b { (thousands(last.failures.total())) " of " (thousands(last.met)) } @if last.failures.total() > 0 { ": " (manners(last.failures)) } "; " (thousands(s.by_tuning)) " of them after tuning alone" } @else { "Tuning within what the reports leave open kept no other scenario" }
@@ -86,6 +87,19 @@ fn account_sentence(context: &Context, accounts: &AccountSet) -> Markup {
         (beyond_tyres(last))
         ". A failure is a contact, a box gap below " (fixed(suite.profile.failure.min_gap_m, 1).unwrap_or_default())
         "\u{a0}m, leaving the road, or getting stuck."
+    }
+}
+
+/// Scenarios of the suite itself that do not show their crash as told: a person edited them, or they were not run.
+fn not_shown_here(s: &Summary) -> Markup {
+    let shown = s.cases - s.own_unfaithful - s.own_not_run;
+    html! {
+        @if shown < s.cases {
+            b { (thousands(shown)) " of the " (thousands(s.cases)) " in this suite" } " show it"
+            @if s.own_unfaithful > 0 { ", " b { (thousands(s.own_unfaithful)) } " not as told" }
+            @if s.own_not_run > 0 { ", " b { (thousands(s.own_not_run)) } " not run" }
+            ". "
+        }
     }
 }
 

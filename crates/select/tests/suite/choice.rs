@@ -5,7 +5,9 @@ use recrash_model::record::{Coded, RecordSet, Severity};
 use recrash_model::selection::{Selection, Strategy, Weighting};
 use recrash_model::template::{Movement, Template};
 use recrash_model::{Diagnostic, Seed};
-use recrash_select::{Embedding, SelectError, SelectOptions, budget_table, select, select_with, stability};
+use recrash_select::{
+    Embedding, SelectError, SelectOptions, budget_table, select, select_onward, select_with, stability,
+};
 
 const STRAIGHT: Movement = Movement::Straight;
 const LEFT: Movement = Movement::LeftTurn;
@@ -288,4 +290,31 @@ fn picks_are_records_whose_crash_is_told() {
         let (picks, ..) = choose(&[0, 2, 3, 5, 6], strategy);
         assert!(picks.iter().all(|pick| [1, 4, 7].contains(pick)), "{strategy:?}: {picks:?}");
     }
+}
+
+#[test]
+fn picks_of_the_last_choice_stay_when_records_come_in_and_new_templates_without_one_are_named() {
+    let (a, b, c) = (crossing(STRAIGHT, STRAIGHT), crossing(STRAIGHT, LEFT), crossing(LEFT, STRAIGHT));
+    let (set, rows) = on_a_line(&[(a, 0.0), (a, 0.1), (b, 0.5), (c, 0.2), (a, 0.05)]);
+    let embedding = Embedding::new("line", &rows).unwrap();
+    let go_on = |earlier: &[Vec<usize>], budget| {
+        let outcome =
+            select_onward(&set, &paper(), &options(Strategy::Stratified, budget), &embedding, earlier).unwrap();
+        check_invariants(&set, &outcome.value);
+        let picks: Vec<usize> = outcome.value.clusters.iter().map(|cluster| cluster.pick_index).collect();
+        let is_new = |remark: &&Diagnostic| remark.code == "select.new-without-pick";
+        (picks, outcome.diagnostics.iter().find(is_new).map(|remark| remark.message.clone()))
+    };
+    let said = |words: &str| Some(format!("{words} no pick, as those of the last choice stay"));
+    // Records 3 and 4 came in, and with them the template of 3.
+    assert_eq!(go_on(&[vec![1, 0], vec![2]], 2), (vec![1, 2], said("1 new template has")));
+    assert_eq!(go_on(&[vec![1, 0]], 1), (vec![1], said("2 new templates have")));
+    // Where there is room it gets a pick.
+    assert_eq!(go_on(&[vec![1, 0], vec![2]], 3), (vec![1, 2, 3], None));
+    // A template that had no pick before is no news.
+    assert_eq!(go_on(&[vec![1, 0, 2, 3]], 1), (vec![1], None));
+    // A pick that is gone makes room for one of its template; the others stay.
+    assert_eq!(go_on(&[vec![usize::MAX, 0], vec![2], vec![3]], 3), (vec![0, 2, 3], None));
+    // None of them is left: chosen anew.
+    assert_eq!(go_on(&[vec![usize::MAX, 0]], 3), go_on(&[], 3));
 }

@@ -8,7 +8,7 @@ mod numbers;
 mod structure;
 
 use crate::error::PipelineError;
-use crate::files::folders::must_be_free;
+use crate::files::folders::{FolderInWork, must_be_free};
 use crate::files::json::{to_compact_json, to_json};
 use crate::files::paths;
 use crate::files::store::{Store, io, read_bytes, sha256, write_suite_file};
@@ -118,12 +118,12 @@ pub fn evidence(request: &EvidenceRequest, progress: &dyn Progress) -> Result<Ev
     must_be_free(&request.folder, None)?;
     let reports = read_reports(&request.reports)?;
     let results = request.results.as_deref().map(read_results).transpose()?;
-    let written = write(request, reports, results.as_ref(), progress);
-    if written.is_err() {
-        // Nothing else was in the folder: half a folder would only be in the way of the next try.
-        let _ = std::fs::remove_dir_all(&request.folder);
-    }
-    written
+    // Half a folder would only be in the way of the next try, and what is in the user's is his.
+    let work = FolderInWork::beside(&request.folder)?;
+    let in_work = EvidenceRequest { folder: work.path().to_owned(), ..request.clone() };
+    let written = write(&in_work, reports, results.as_ref(), progress)?;
+    work.finish()?;
+    Ok(Evidence { folder: request.folder.clone(), ..written })
 }
 
 fn write(
