@@ -183,11 +183,6 @@ impl Programme {
         let beside = now.shift.beside(now.s_m);
         self.course.motion(usize::from(now.piece), now.s_m, reverse, beside, now.speed_mps)
     }
-
-    /// Speed along its heading; negative in reverse gear. [m/s]
-    pub fn signed_speed(&self, now: &Progress) -> f64 {
-        if self.course.legs[usize::from(now.leg)].reverse { -now.speed_mps } else { now.speed_mps }
-    }
 }
 
 impl Progress {

@@ -23,7 +23,7 @@ use recrash_model::scenario::{
 use recrash_roads::check_on;
 
 /// The system under test takes over this long before the contact, or before the ego began to stop. [s]
-const HANDOVER_BEFORE_S: f64 = 5.0;
+pub const HANDOVER_BEFORE_S: f64 = 5.0;
 
 /// A system under test wants no less than this. [m/s]
 const LEAST_WANTED_MPS: f64 = 2.0;
