@@ -3,7 +3,6 @@
 use crate::told::crash::Told;
 use crate::told::lies::Lies;
 use crate::told::zones::side_of;
-use crate::usual::STANDS_MPS;
 use recrash_model::account::{ContactState, Kind, LeftRight};
 use recrash_model::geometry::{OrientedBox, Pose, Vec2};
 use recrash_model::kinds::PartnerKind;
@@ -29,13 +28,13 @@ pub(super) fn goes_under(
 ) -> bool {
     let body = |pose: Pose| OrientedBox::new(pose, ego.length_m - 2.0 * UNDER_M, ego.width_m - 2.0 * UNDER_M);
     if told.cp.kind == PartnerKind::Animal || told.dropped.is_some() {
-        let met = &ego.states[since.min(ego.states.len() - 1)];
+        let met = ego.at(since);
         let on = Vec2::from_heading(met.heading) * (met.speed().signum() * ONTO_M);
-        let moves = met.velocity().length() > STANDS_MPS;
+        let moves = !met.stands();
         return moves && body(Pose { position: met.position() + on, heading: met.heading }).overlaps(touched);
     }
     (since..ego.states.len()).any(|step| {
-        let lying = thing.map_or(*touched, |track| track.outline(step.min(track.states.len() - 1)));
+        let lying = thing.map_or(*touched, |track| track.outline(track.within(step)));
         body(ego.states[step].pose()).overlaps(&lying)
     })
 }
@@ -48,7 +47,7 @@ const AWAY_M: f64 = 3.0;
 /// Whether a thing comes along right behind somebody, and is left behind by it.
 pub(super) fn comes_off(thing: &ActorTrack, owner: &ActorTrack, until: usize) -> bool {
     let gap = |step: usize| {
-        let at = |track: &ActorTrack| track.states[step.min(track.states.len() - 1)].pose();
+        let at = |track: &ActorTrack| track.at(step).pose();
         let (own, lost) = (at(owner), at(thing));
         let (ahead, way) = (Vec2::from_heading(own.heading), own.position - lost.position);
         (ahead.dot(way) - 0.5 * (thing.length_m + owner.length_m), ahead.cross(way).abs() < OFF_BESIDE_M)

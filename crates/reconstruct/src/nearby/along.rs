@@ -6,7 +6,7 @@ use crate::nearby::scene::{LOT_MPS, Scene};
 use crate::nearby::way::{BRAKES_MPS2, PASSES_BY_MPS, Way};
 use crate::others::stand::stands;
 use crate::told::others::Role;
-use crate::usual::{LANE_M, STANDS_MPS};
+use crate::usual::LANE_M;
 use recrash_model::account::{LeftRight, Origin};
 use recrash_model::geometry::{Pose, Vec2};
 
@@ -157,7 +157,7 @@ impl<'a> Scene<'a> {
         let rear = (0..=self.until).map(|step| self.at(step).0).fold(f64::MAX, f64::min) - self.front_m() - half_m;
         let (s_m, _) = self.at(self.until);
         let mut list = Vec::new();
-        if self.ego.states[self.until].velocity().length() > STANDS_MPS {
+        if !self.ego.states[self.until].stands() {
             let place = |behind_m: f64| self.road(s_m - self.front_m() - half_m - behind_m, 0.0);
             let [mean_mps, _] = self.speeds();
             // It brakes as they touch.
@@ -238,7 +238,7 @@ impl<'a> Scene<'a> {
         let [mean_mps, _] = self.speeds();
         let place = |on_m: f64| self.road(s_m + self.front_m() + half_m + on_m, to_m - shifts_m);
         let way = |speed_mps: f64, on_m: f64| Way { shifts_m, ..Way::straight(place(on_m), speed_mps, self.contact_s) };
-        match self.ego.states[self.until].velocity().length() < STANDS_MPS {
+        match self.ego.states[self.until].stands() {
             true => [14.0, 18.0, 22.0].map(|on_m| way(MERGES_MPS, on_m)).into(),
             false => [6.0, 10.0, 14.0, 20.0].map(|on_m| way(mean_mps, on_m)).into(),
         }

@@ -35,7 +35,7 @@ impl<'a> Scene<'a> {
         };
         let contact_s = rollout.events.iter().find_map(touched)?;
         let ego = rollout.ego_track();
-        let until = ((contact_s * 10.0) as usize).min(ego.states.len() - 1);
+        let until = ego.step_at(contact_s);
         let partner = rollout.actors.iter().find(|track| track.id == "cp");
         Some(Self { told, ground, ego, partner, contact_s, until, turned: false })
     }
