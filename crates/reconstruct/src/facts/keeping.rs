@@ -7,7 +7,7 @@ use crate::told::layout::strip_of;
 use crate::told::side::Turning;
 use crate::told::zones::side_of;
 use crate::usual::{LANE_M, NARROW_M, STANDS_MPS, SWINGS_OUT_RAD, TIGHTEST_M, WHEELED_M, swing_rad};
-use recrash_model::account::{ContactState, Origin};
+use recrash_model::account::{ContactState, LeftRight, Origin};
 use recrash_model::geometry::Vec2;
 use recrash_model::kinds::PartnerKind;
 use recrash_model::math;
@@ -262,14 +262,14 @@ const BEGUN_RAD: f64 = 0.09;
 
 /// Whether somebody who has yet to turn for that has not begun to.
 pub(super) fn is_before_turn(told: &Told, track: &ActorTrack, contact_s: f64) -> bool {
-    let left = match told.cp.movement.filter(|_| told.cp.turns_later && told.sv.turning == Turning::No) {
-        Some(Movement::LeftTurn) => 1.0,
-        Some(Movement::RightTurn) => -1.0,
+    let to = match told.cp.movement.filter(|_| told.cp.turns_later && told.sv.turning == Turning::No) {
+        Some(Movement::LeftTurn) => LeftRight::Left,
+        Some(Movement::RightTurn) => LeftRight::Right,
         _ => return false,
     };
     let until = track.step_at(contact_s);
     let turned = math::wrap_angle(track.states[until].heading - track.states[0].heading);
-    told.sv.state.stands() && side_of(&told.sv.zones) == Some(left) && left * turned < BEGUN_RAD
+    told.sv.state.stands() && side_of(&told.sv.zones) == Some(to) && to.sign() * turned < BEGUN_RAD
 }
 
 impl Told {

@@ -65,7 +65,7 @@ struct View<'a> {
 
 /// Whether that many metres to the left are on this side.
 fn is_on_side(side: LeftRight, left_m: f64) -> bool {
-    (side == LeftRight::Left) == (left_m > 0.0)
+    side.is_at(left_m)
 }
 
 impl<'a> View<'a> {

@@ -343,7 +343,7 @@ impl<'a> Seen<'a> {
     /// Whether somebody who crosses comes from the told side.
     fn is_on_side(&self, extra: &Extra, track: &ActorTrack) -> bool {
         let (_, left_m) = self.beside(track, 0);
-        extra.side.is_none_or(|side| (side == LeftRight::Left) == (left_m > 0.0))
+        extra.side.is_none_or(|side| side.is_at(left_m))
     }
 
     /// Whether somebody comes towards the ego, and passes it on its left while it stands or slows, where it is told to wait for it.
@@ -395,7 +395,7 @@ impl<'a> Seen<'a> {
     /// Whether somebody stands in the next lane on the told side where the ego is touched.
     fn stands_beside(&self, extra: &Extra, track: &ActorTrack) -> bool {
         let (ahead_m, left_m) = self.beside(track, self.until);
-        let side = extra.side.is_none_or(|side| (side == LeftRight::Left) == (left_m > 0.0));
+        let side = extra.side.is_none_or(|side| side.is_at(left_m));
         if extra.between {
             return self.stays(track) && side && self.is_passed_between(track);
         }
@@ -416,7 +416,7 @@ impl<'a> Seen<'a> {
 
     /// Whether somebody is in the next lane on the told side where the ego is touched, and has come along beside it.
     fn drives_beside(&self, extra: &Extra, track: &ActorTrack) -> bool {
-        let side = |left_m: f64| extra.side.is_none_or(|side| (side == LeftRight::Left) == (left_m > 0.0));
+        let side = |left_m: f64| extra.side.is_none_or(|side| side.is_at(left_m));
         let next = |step: usize| {
             let (ahead_m, left_m) = self.beside(track, step);
             let aside = (0.5 * LANE_M..1.8 * LANE_M).contains(&left_m.abs());
@@ -428,7 +428,7 @@ impl<'a> Seen<'a> {
     /// Whether somebody goes backwards into the ego's lane, from the told side, and is ahead of it there.
     fn backs_out(&self, extra: &Extra, track: &ActorTrack) -> bool {
         let (ahead_m, left_m) = self.beside(track, self.until);
-        let side = extra.side.is_none_or(|side| (side == LeftRight::Left) == (self.beside(track, 0).1 > 0.0));
+        let side = extra.side.is_none_or(|side| side.is_at(self.beside(track, 0).1));
         let backs = (0..=self.until).any(|step| track.at(step).speed() < -STANDS_MPS);
         let comes = left_m.abs() < LANE_M + 0.5 * track.length_m && left_m.abs() + 1.0 < self.beside(track, 0).1.abs();
         backs && side && comes && (0.0..AHEAD_M + self.stopping_m(self.until) + PARKED_M).contains(&ahead_m)
@@ -467,7 +467,7 @@ impl<'a> Seen<'a> {
     fn merges(&self, extra: &Extra, track: &ActorTrack) -> bool {
         let (ahead_m, left_m) = self.beside(track, self.until);
         let was = |step: usize| self.beside(track, step).1;
-        let side = extra.side.is_none_or(|side| (side == LeftRight::Left) == (was(0) > 0.0));
+        let side = extra.side.is_none_or(|side| side.is_at(was(0)));
         let beside = (0..self.until).any(|step| was(step).abs() > 0.7 * LANE_M);
         // In the lane that the ego may have left to make room.
         let lane_m = if self.told.sv_aside().is_some() { 1.3 } else { 0.4 } * LANE_M;
@@ -483,7 +483,7 @@ impl<'a> Seen<'a> {
         let (left_m, ego_left_m) = (ahead.cross(way), ahead.cross(moved));
         let in_line = left_m.abs() < 0.5 * LANE_M && (left_m - ego_left_m).abs() > 0.8;
         let by = left_m.abs() >= 0.5 * LANE_M && left_m.abs() < 1.5 * LANE_M;
-        let side = extra.side.is_none_or(|side| (side == LeftRight::Left) == (left_m > ego_left_m));
+        let side = extra.side.is_none_or(|side| side.is_at(left_m - ego_left_m));
         let (ahead_m, _) = self.beside(track, self.until);
         let near = ahead_m.abs() < CROSSING_M && (ahead_m < 0.0 || !extra.behind);
         self.stays(track) && ahead.dot(way) > 0.0 && near && (in_line || by) && side

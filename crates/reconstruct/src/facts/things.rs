@@ -103,7 +103,7 @@ const FROM_ASIDE_M: f64 = 1.0;
 /// Whether what hangs or grows into the ego's lane comes from the told side.
 fn reaches_in(told: &Told, ego: &OrientedBox, other: &OrientedBox) -> Option<(String, bool, String)> {
     let side = told.reaches_in?;
-    let (sign, name) = if side == LeftRight::Left { (1.0, "left") } else { (-1.0, "right") };
+    let (sign, name) = (side.sign(), if side == LeftRight::Left { "left" } else { "right" });
     let farthest_m = other.corners().map(|corner| sign * ego.to_local(corner).y).into_iter().fold(f64::MIN, f64::max);
     let beside_m = farthest_m - ego.half_width;
     Some((
@@ -130,8 +130,8 @@ pub(super) fn check(told: &Told, ego: &OrientedBox, other: &OrientedBox) -> Opti
     let left_m = ego.to_local(other.centre).y;
     let there = (WHEELS_M.0..WHEELS_M.1).contains(&left_m.abs());
     let (side, of) = match side_of(&told.sv.zones) {
-        Some(side) if side > 0.0 => (" on the left", left_m > 0.0),
-        Some(_) => (" on the right", left_m < 0.0),
+        Some(LeftRight::Left) => (" on the left", left_m > 0.0),
+        Some(LeftRight::Right) => (" on the right", left_m < 0.0),
         None => ("", true),
     };
     Some((format!("under a wheel{side}"), there && of, format!("{left_m:.1} m to the left of the ego's middle")))

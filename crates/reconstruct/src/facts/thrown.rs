@@ -23,7 +23,7 @@ pub(super) fn comes_as_told(told: &Told, ego: &ActorTrack, [partner, other]: [&A
     // Of the ego, or of whom it touched.
     let on_side = |side: LeftRight| {
         let left_m = [met, of_ego].map(|from| road.cross(other.states[0].position() - from));
-        let sign = if side == LeftRight::Left { 1.0 } else { -1.0 };
+        let sign = side.sign();
         left_m.iter().any(|left_m| sign * left_m > ASIDE * LANE_M)
     };
     let way = other.at(step).position() - of_ego;

@@ -185,7 +185,7 @@ impl Scene<'_> {
     pub(super) fn stands_beside(&self, extra: &Extra, length_m: f64) -> ActorPlan {
         let usual = self.told.comes_from_side().or_else(|| self.partner_from()).unwrap_or(LeftRight::Right);
         let side = extra.side.unwrap_or(usual);
-        let t_m = if side == LeftRight::Right { LANE_M } else { -LANE_M };
+        let t_m = -side.sign() * LANE_M;
         let (s_m, _) = self.at(self.until);
         let there = |track: &ActorTrack| {
             let state = track.at(self.until);
