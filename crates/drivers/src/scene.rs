@@ -6,6 +6,7 @@
 use crate::driver::{Conflict, Driver, ReferenceDriver};
 use crate::grid::Concrete;
 use crate::sight::{Body, STEPS_PER_S};
+use recrash_model::vehicle::GRAVITY_MPS2;
 
 const LENGTH_M: f64 = 4.3;
 /// Width of every vehicle in the published grids. [m]
@@ -22,7 +23,6 @@ const LANE_CHANGE_M: f64 = 4.0;
 const SWAYING_M: f64 = 0.375;
 /// The vehicle that stands behind a cut-out is longer than the others, as published. [m]
 const STANDING_LENGTH_M: f64 = 5.0;
-const GRAVITY_MPS2: f64 = 9.81;
 
 /// The moment when the vehicle under test touches the other.
 #[derive(Debug, Clone, Copy, PartialEq)]

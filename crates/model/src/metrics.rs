@@ -372,6 +372,35 @@ impl CheckKind {
         Self::Door,
     ];
 
+    /// What it is about: stagings are judged by that.
+    pub fn class(self) -> CheckClass {
+        match self {
+            Self::Road
+            | Self::WorkZone
+            | Self::Encounter
+            | Self::ContactZones
+            | Self::ExcludedCollision
+            | Self::Situation => CheckClass::OfTemplates,
+            Self::Contact
+            | Self::Partner
+            | Self::SvZones
+            | Self::CpZones
+            | Self::SvState
+            | Self::CpState
+            | Self::SvSpeed
+            | Self::CpSpeed
+            | Self::Door => CheckClass::Touch,
+            Self::Approach | Self::Order | Self::SvLane | Self::CpLane => CheckClass::Place,
+            Self::SvMovement | Self::CpMovement => CheckClass::Movement,
+            Self::SvActs | Self::CpActs => CheckClass::Acts,
+            Self::PassedOn => CheckClass::Push,
+            Self::SvAstride | Self::CpAstride => CheckClass::Astride,
+            Self::SvControl | Self::CpControl => CheckClass::Signal,
+            Self::Reason | Self::Others => CheckClass::Others,
+            Self::OthersAstride => CheckClass::OthersAstride,
+        }
+    }
+
     /// For tables.
     pub fn label(self) -> &'static str {
         match self {
@@ -418,7 +447,39 @@ impl CheckKind {
     }
 }
 
-/// What became of one told fact. Words of `DESIGN`: shown, not shown, cannot be shown, not told.
+/// What a check is about.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum CheckClass {
+    /// No account is held to it: a template is, or the system under test.
+    OfTemplates,
+    /// Who touches whom, where on both, and how fast.
+    Touch,
+    /// From where the partner came, in which lane each was, and who was there first.
+    Place,
+    /// Which way each of the two came.
+    Movement,
+    /// What each of the two did, one act after the other.
+    Acts,
+    /// Who threw the partner at the ego.
+    Push,
+    /// Whether one of the two is over a line of the road.
+    Astride,
+    /// What signals and signs showed, and who obeyed them.
+    Signal,
+    /// Who else was there, and why the ego stood.
+    Others,
+    /// Whether one of those is over a line of the road.
+    OthersAstride,
+}
+
+impl CheckClass {
+    /// Whether it is something that the two did: without it the crash is another one.
+    pub const fn is_deed(self) -> bool {
+        matches!(self, Self::Movement | Self::Acts | Self::Push)
+    }
+}
+
+/// What became of one stated fact: shown, not shown, cannot be shown, not stated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum CheckResult {
@@ -495,6 +556,23 @@ impl Verdict {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::collections::BTreeSet;
+
+    /// Every kind there is: the error for an unknown one lists their names.
+    fn all_kinds() -> BTreeSet<CheckKind> {
+        let error = serde_json::from_str::<CheckKind>("\"?\"").unwrap_err().to_string();
+        let names = error.split('`').skip(3).step_by(2);
+        names.map(|name| serde_json::from_value(name.into()).expect(name)).collect()
+    }
+
+    #[test]
+    fn the_kinds_of_accounts_are_all_that_are_not_of_templates() {
+        let all = all_kinds();
+        assert!(all.contains(&CheckKind::Road) && all.contains(&CheckKind::Situation), "{all:?}");
+        // What a template is held to besides: the same words, asked of accounts too.
+        let of_accounts = all.into_iter().filter(|kind| kind.class() != CheckClass::OfTemplates);
+        assert_eq!(of_accounts.collect::<BTreeSet<_>>(), BTreeSet::from(CheckKind::OF_ACCOUNTS));
+    }
 
     fn verdict(results: &[CheckResult]) -> Answer {
         let check = |&result| Check { kind: CheckKind::Road, expected: String::new(), observed: String::new(), result };

@@ -267,8 +267,6 @@ pub enum RejectReason {
     MovementNotExpressible,
     /// A road type the profile cannot express, or none known.
     RoadNotExpressible,
-    /// A partner kind the profile cannot express.
-    PartnerNotExpressible,
     /// Its crash cannot be told.
     Untold(Untold),
 }
@@ -285,7 +283,6 @@ impl RejectReason {
             Self::FilteredOut => "left out by the filter",
             Self::MovementNotExpressible => "movement not expressible",
             Self::RoadNotExpressible => "road type not expressible",
-            Self::PartnerNotExpressible => "partner kind not expressible",
             Self::Untold(why) => why.label(),
         }
     }

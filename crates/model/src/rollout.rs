@@ -15,8 +15,22 @@ const ROLLOUT_FORMAT_1: &str = "recrash.rollout/1";
 /// Time between two recorded states, and between two decisions. [s]
 pub const STEP_S: f64 = 0.1;
 
+/// Recorded states in a second.
+const STEPS_PER_S: f64 = 10.0;
+
+/// Number of the last state that was recorded by a time [s]. Times are multiplied, never divided by [`STEP_S`]: 9.1 / 0.1 is less than 91.
+pub fn step_of(time_s: f64) -> usize {
+    (time_s * STEPS_PER_S) as usize
+}
+
+/// Who is slower than this stands. [m/s]
+pub const STANDS_MPS: f64 = 0.1;
+
 /// Physics steps in one step, as MetaDrive has them.
 pub const SUBSTEPS: usize = 5;
+
+/// The usual physics step. [s]
+pub const PHYSICS_STEP_S: f64 = STEP_S / SUBSTEPS as f64;
 
 /// Physics steps in one step of a run: [`SUBSTEPS`], unless somebody asks whether the result hangs on that.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -64,7 +78,8 @@ const NOWHERE_M: f64 = 1e6;
 /// Name of the ego in every list of actors; it is always the first.
 pub const EGO_ID: &str = "ego";
 
-/// One simulation.
+/// One simulation. There is at least one actor, and all tracks are equally long, by a state or more: whatever is read is refused where it is
+/// not so.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "RolloutOnDisk")]
 pub struct Rollout {
@@ -196,6 +211,12 @@ impl ActorState {
         self.velocity().dot(Vec2::from_heading(self.heading))
     }
 
+    /// Whether it stands, however it points.
+    #[inline]
+    pub fn stands(&self) -> bool {
+        self.velocity().length() < STANDS_MPS
+    }
+
     /// Whether every number of it is finite.
     pub fn is_finite(&self) -> bool {
         self.numbers().iter().all(|number| number.is_finite())
@@ -207,6 +228,26 @@ impl ActorState {
 }
 
 impl ActorTrack {
+    /// Its state at a step; behind the end the last one.
+    pub fn at(&self, step: usize) -> &ActorState {
+        &self.states[self.within(step)]
+    }
+
+    /// A step, or the last one where that is earlier.
+    pub fn within(&self, step: usize) -> usize {
+        step.min(self.states.len() - 1)
+    }
+
+    /// Number of the last state that was recorded by a time. [s]
+    pub fn step_at(&self, time_s: f64) -> usize {
+        self.within(step_of(time_s))
+    }
+
+    /// All states that were recorded by a time. [s]
+    pub fn until(&self, time_s: f64) -> &[ActorState] {
+        &self.states[..=self.step_at(time_s)]
+    }
+
     /// Its mass; `None` for what stands firm. [kg]
     pub fn mass_kg(&self) -> Option<f64> {
         self.mass_kg.or(VehicleSpec::mass_kg(self.kind))
@@ -404,6 +445,7 @@ impl TryFrom<RolloutOnDisk> for Rollout {
                 ));
             }
         };
+        check_tracks(&read.actors)?;
         Ok(Self {
             format: ROLLOUT_FORMAT.to_owned(),
             scenario_id: read.scenario_id,
@@ -415,6 +457,22 @@ impl TryFrom<RolloutOnDisk> for Rollout {
             termination: read.termination,
             state_hash,
         })
+    }
+}
+
+/// Whether there is an ego, and every track has as many states as its own.
+fn check_tracks(actors: &[ActorTrack]) -> Result<(), String> {
+    let Some(ego) = actors.first().filter(|ego| !ego.states.is_empty()) else {
+        return Err("`actors` needs the ego first, with one state or more".to_owned());
+    };
+    let steps = ego.states.len();
+    match actors.iter().find(|track| track.states.len() != steps) {
+        Some(track) => Err(format!(
+            "`actors`: `{}` has {} states and the ego {steps}; every track has one at each step",
+            track.id,
+            track.states.len()
+        )),
+        None => Ok(()),
     }
 }
 
@@ -491,6 +549,30 @@ mod tests {
         let state = &read.actors[0].states[0];
         assert!((state.vx - 75.0_f64.sqrt()).abs() < 1e-12 && (state.vy - 5.0).abs() < 1e-12, "{state:?}");
         assert_eq!(read.state_hash, Rollout::hash_states(&read.actors));
+    }
+
+    #[test]
+    fn every_time_of_a_step_falls_into_that_step() {
+        for step in 0..=3000 {
+            assert_eq!(step_of(step as f64 * STEP_S), step);
+            assert_eq!(step_of(step as f64 / STEPS_PER_S), step);
+        }
+        assert_eq!(step_of(9.15), 91);
+    }
+
+    #[test]
+    fn tracks_of_different_lengths_and_none_at_all_are_refused() {
+        let state = json!({ "x": 1, "y": 2, "heading": 0.5, "vx": 3, "vy": 4, "steer": 0, "throttle": 1 });
+        let mut read = document(ROLLOUT_FORMAT, state.clone());
+        let mut other = read["actors"][0].clone();
+        other["id"] = json!("cp");
+        other["states"] = json!([state, state]);
+        read["actors"].as_array_mut().unwrap().push(other);
+        let error = serde_json::from_value::<Rollout>(read.clone()).unwrap_err().to_string();
+        assert!(error.contains("`cp` has 2 states and the ego 1"), "{error}");
+        read["actors"] = json!([]);
+        let error = serde_json::from_value::<Rollout>(read).unwrap_err().to_string();
+        assert!(error.contains("needs the ego first"), "{error}");
     }
 
     #[test]

@@ -4,7 +4,10 @@ use crate::kinds::PartnerKind;
 
 /// The hardest that tyres let anybody brake on a dry road: 1 g. Peak coefficients of friction on dry asphalt are 0.8 to 0.9 (wong2008).
 /// Vehicles of MetaDrive, and of the native simulator as they are, brake with up to 1.8 g. [m/s^2]
-pub const TYRE_LIMIT_MPS2: f64 = 9.81;
+pub const TYRE_LIMIT_MPS2: f64 = GRAVITY_MPS2;
+
+/// Standard gravity, as MetaDrive sets it. [m/s^2]
+pub const GRAVITY_MPS2: f64 = 9.81;
 
 /// Tyre friction of MetaDrive's vehicles (`wheel_friction`) on its only surface, taken for a dry road.
 pub const DRY_TYRE_FRICTION: f64 = 0.9;

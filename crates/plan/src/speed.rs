@@ -5,20 +5,17 @@ use crate::constants::{
     STOPPING_MPS2,
 };
 use recrash_model::kinds::PartnerKind;
+use recrash_model::rollout::PHYSICS_STEP_S;
 use recrash_model::scenario::{DEFAULT_SPEED_KP, Policy};
 use recrash_model::surroundings::Surface;
-use recrash_model::vehicle::{DRY_TYRE_FRICTION, VehicleSpec};
+use recrash_model::vehicle::{DRY_TYRE_FRICTION, GRAVITY_MPS2, VehicleSpec};
 use serde::Serialize;
-
-/// Standard gravity. [m/s^2]
-const GRAVITY_MPS2: f64 = 9.81;
 
 /// Bullet's tyres hold this much more along than across (`docs/models/vehicle.md`).
 const ALONG_PER_ACROSS: f64 = 2.0;
 
-/// Share of a wheel's sideways speed that one physics step takes away, and the step (`docs/models/vehicle.md`). [-, s]
+/// Share of a wheel's sideways speed that one physics step takes away (`docs/models/vehicle.md`).
 const DAMPING: f64 = 0.2;
-const PHYSICS_STEP_S: f64 = 0.02;
 
 /// Height of the centre of mass of a vehicle that has settled on its springs. [m]
 const SETTLED_HEIGHT_M: f64 = 0.539;

@@ -23,6 +23,8 @@ mod told;
 mod touch;
 mod usual;
 
+pub use draft::scenario::HANDOVER_BEFORE_S;
+pub use ego::plan::ROLLS_S;
 pub use search::open::open_choices;
 pub use search::reconstruction::Reconstruction;
 

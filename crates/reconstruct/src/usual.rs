@@ -12,8 +12,7 @@ pub(crate) const LEAD_GAP_M: f64 = 2.5;
 /// Room that is left before somebody, or behind. [m]
 pub(crate) const ROOM_M: f64 = 2.0;
 
-/// Slower than this is standing. [m/s]
-pub(crate) const STANDS_MPS: f64 = 0.1;
+pub(crate) use recrash_model::rollout::STANDS_MPS;
 
 /// A course goes on behind the place of the contact, so far that nobody slows for its end before it. [m]
 pub(crate) fn beyond_m(speed_mps: f64) -> f64 {

@@ -10,17 +10,12 @@
 
 use recrash_model::geometry::{Pose, Vec2};
 use recrash_model::math;
+pub use recrash_model::rollout::PHYSICS_STEP_S;
 use recrash_model::rollout::Substeps;
 use recrash_model::surroundings::Surface;
-use recrash_model::vehicle::{DRY_TYRE_FRICTION, VehicleSpec};
+use recrash_model::vehicle::{DRY_TYRE_FRICTION, GRAVITY_MPS2, VehicleSpec};
 use recrash_plan::constants::SETTLED_HEIGHT_M;
 use wide::f64x2;
-
-/// The usual physics step. [s]
-pub const PHYSICS_STEP_S: f64 = 0.02;
-
-/// Standard gravity as MetaDrive sets it. [m/s^2]
-const GRAVITY_MPS2: f64 = 9.81;
 
 /// Share of the sideways velocity at a wheel that one usual physics step takes away (Bullet, `resolveSingleBilateral`); another
 /// step takes as much in the same time.

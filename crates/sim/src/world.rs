@@ -17,7 +17,7 @@ use recrash_model::rollout::{ActorState, Event, Role, Substeps, Termination};
 use recrash_model::scenario::{Aspect, Device, MissionStop, Part, Policy};
 use recrash_model::surroundings::Surface;
 use recrash_model::vehicle::VehicleSpec;
-use recrash_plan::acts::{self, Attached, Glimpse, Names, PartState, Programme, ego_stop_lines};
+use recrash_plan::acts::{self, Attached, Glimpse, Names, PartState, Programme};
 use recrash_plan::constants::EGO_OVERTAKE_TIMER_STEPS;
 use recrash_plan::{Crossing, Plan, Way};
 use recrash_roads::{Footprint, LanePath, Placement, RoadId, Scenario, StopLine, TRAFFIC_SPEED_MPS, TrafficPlacement};
@@ -446,7 +446,7 @@ fn plan(setting: &mut Setting, state: &mut State, scenario: &Scenario, seat: Sea
     setting.after_contact_s = draft.after_contact_s;
     setting.control.extend(draft.control.iter().map(|control| control.device.clone()));
     setting.stops.extend_from_slice(&draft.ego.stops);
-    setting.ego_lines.extend(ego_stop_lines(scenario));
+    setting.ego_lines.extend(scenario.ego_stop_lines());
     state.signals.resize(setting.control.len(), None);
     let names = Names(draft);
     if let (Some(placement), Some(recorded)) = (scenario.recorded(), &draft.ego.recorded) {

@@ -104,6 +104,24 @@ pub enum LeftRight {
 }
 
 impl LeftRight {
+    /// The side of something that is so far to the left; what is straight ahead is on the right. [m]
+    pub const fn of_left(left_m: f64) -> Self {
+        if left_m > 0.0 { Self::Left } else { Self::Right }
+    }
+
+    /// 1 on the left, -1 on the right.
+    pub const fn sign(self) -> f64 {
+        match self {
+            Self::Left => 1.0,
+            Self::Right => -1.0,
+        }
+    }
+
+    /// Whether something that is so far to the left is on this side. [m]
+    pub const fn is_at(self, left_m: f64) -> bool {
+        matches!((self, left_m > 0.0), (Self::Left, true) | (Self::Right, false))
+    }
+
     /// The other side.
     pub fn other(self) -> Self {
         match self {

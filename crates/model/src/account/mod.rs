@@ -59,7 +59,7 @@ pub enum Source {
 }
 
 impl Source {
-    /// Whether the fact stands in the narrative, or follows from what stands there.
+    /// Whether the fact stands in the words of the narrative: in no column, and by no rule.
     pub fn is_told(&self) -> bool {
         matches!(self, Self::Words { .. })
     }

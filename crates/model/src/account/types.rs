@@ -188,7 +188,7 @@ impl Kind {
         }
     }
 
-    /// Whether it is a vehicle on at least three wheels, driven by somebody.
+    /// Whether it is a car or a truck, in the wide sense of [`KindGroup`]: a tram and a trailer are, a motorcycle is not.
     pub fn is_vehicle(self) -> bool {
         matches!(self.group(), KindGroup::Car | KindGroup::Truck)
     }

@@ -14,19 +14,14 @@ use recrash_lab::replay;
 use recrash_model::Diagnostic;
 use recrash_model::account::Account;
 use recrash_model::metrics::{Check, CheckKind, CheckResult, Verdict};
-use recrash_model::rollout::{ActorState, Rollout, STEP_S};
+use recrash_model::rollout::{ActorState, Rollout, STANDS_MPS, STEP_S};
 use recrash_model::scenario::{EgoSpec, ScenarioDraft, Source};
 use recrash_model::selection::Cluster;
-use recrash_reconstruct::{Reconstruction, held_against, reconstruct};
+use recrash_reconstruct::{HANDOVER_BEFORE_S, ROLLS_S, Reconstruction, held_against, reconstruct};
 use recrash_roads::{MAX_WANTED_MPS, Simulator};
 use recrash_sim::{Ego, Native};
 use std::cell::RefCell;
 
-/// The system under test takes over this long before the contact, and this long before the ego began to stop. [s]
-const HANDOVER_BEFORE_S: f64 = 5.0;
-const ROLLS_S: f64 = 1.0;
-/// Who is slower stands. [m/s]
-const STANDS_MPS: f64 = 0.1;
 /// Bytes of a first question, about: reports, scenario, replay and the schema.
 const QUESTION_BYTES: usize = 48_000;
 
@@ -183,8 +178,7 @@ fn hand_over(ego: &mut EgoSpec, rollout: &Rollout, (of_rules, before): (&EgoSpec
     if ego.recorded == of_rules.recorded && contact(before) == Some(contact_s) {
         return;
     }
-    let until = ((contact_s / STEP_S) as usize).min(rollout.steps() - 1);
-    let speeds: Vec<f64> = rollout.ego_track().states[..=until].iter().map(ActorState::speed).collect();
+    let speeds: Vec<f64> = rollout.ego_track().until(contact_s).iter().map(ActorState::speed).collect();
     ego.handover_s = of_rules.handover_s.map(|_| handover_s(&speeds, contact_s));
     // Whoever is tested wants to go no faster than a scenario allows.
     ego.target_speed_mps = speeds.iter().copied().fold(of_rules.target_speed_mps, f64::max).min(MAX_WANTED_MPS);

@@ -204,8 +204,9 @@ impl Programme {
                     Some(Aspect::Green | Aspect::Dark) => {}
                     // Who cannot stop any more goes on.
                     Some(Aspect::Yellow) if v * v > 2.0 * SIGNAL_STOP_MPS2 * left_m.max(0.0) => {}
-                    Some(Aspect::Red | Aspect::Yellow) => stop_at(line.at_m, SIGNAL_STOP_MPS2, HARD_STOP_MPS2),
-                    Some(Aspect::FlashingRed) | None => stop_at(line.at_m, SIGNAL_STOP_MPS2, HARD_STOP_MPS2),
+                    Some(Aspect::Red | Aspect::Yellow | Aspect::FlashingRed) | None => {
+                        stop_at(line.at_m, SIGNAL_STOP_MPS2, HARD_STOP_MPS2);
+                    }
                 }
             }
             self.stand_at_signs(now, sight);

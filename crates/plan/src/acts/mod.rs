@@ -13,7 +13,7 @@ mod progress;
 mod replay;
 
 pub use decide::{Glimpse, Sight};
-pub use names::{Names, ego_stop_lines};
+pub use names::Names;
 pub use parts::{Attached, PartState};
 pub use programme::{Deed, PlannedAct, Programme, When, Who};
 pub use progress::{Mode, Progress};

@@ -1,9 +1,8 @@
-//! What names in a scenario's plans mean, and where its ego passes stop lines.
+//! What names in a scenario's plans mean.
 
 use super::programme::Who;
 use recrash_model::rollout::EGO_ID;
 use recrash_model::scenario::ScenarioDraft;
-use recrash_roads::{Scenario, StopLine};
 
 /// What names in a draft mean.
 #[derive(Debug, Clone, Copy)]
@@ -33,9 +32,4 @@ impl Who for Names<'_> {
         let position = self.0.control.iter().position(|control| control.at == at)?;
         u16::try_from(position).ok()
     }
-}
-
-/// Where the ego's path passes stop lines.
-pub fn ego_stop_lines(scenario: &Scenario) -> impl Iterator<Item = StopLine> + '_ {
-    scenario.ego_stop_lines()
 }

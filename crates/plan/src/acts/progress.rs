@@ -196,11 +196,6 @@ impl Programme {
         let along_mps = now.speed_mps / self.course.stretch(piece, now.s_m, reverse, beside.t_m);
         self.course.motion(piece, now.s_m, reverse, beside, along_mps)
     }
-
-    /// Speed along its heading; negative in reverse gear. [m/s]
-    pub fn signed_speed(&self, now: &Progress) -> f64 {
-        if self.reverses(now) { -now.speed_mps } else { now.speed_mps }
-    }
 }
 
 impl Progress {

@@ -1,7 +1,7 @@
 //! Networks of roads, plans and control, as MetaDrive's Python takes them.
 
 use super::LaneName;
-use crate::acts::{PartTrack, ReplayTrack, ego_stop_lines, replay};
+use crate::acts::{PartTrack, ReplayTrack, replay};
 use recrash_model::geometry::{Pose, Vec2};
 use recrash_model::kinds::PartnerKind;
 use recrash_model::rollout::{EGO_ID, STEP_S};
@@ -137,7 +137,7 @@ impl Scene {
             planned,
             parts,
             control: draft.control.iter().map(|control| control.device.clone()).collect(),
-            lines: ego_stop_lines(scenario).map(|line| (line.at_m, line.control)).collect(),
+            lines: scenario.ego_stop_lines().map(|line| (line.at_m, line.control)).collect(),
             stops: draft.ego.stops.clone(),
             ends: replay.ends,
         }))

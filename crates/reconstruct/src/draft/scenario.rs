@@ -23,7 +23,7 @@ use recrash_model::scenario::{
 use recrash_roads::check_on;
 
 /// The system under test takes over this long before the contact, or before the ego began to stop. [s]
-const HANDOVER_BEFORE_S: f64 = 5.0;
+pub const HANDOVER_BEFORE_S: f64 = 5.0;
 
 /// A system under test wants no less than this. [m/s]
 const LEAST_WANTED_MPS: f64 = 2.0;
@@ -164,7 +164,7 @@ fn driveway(told: &Told, ground: &Ground, begins: &Place) -> Option<Driveway> {
     // Of an ego that turns it is beside the road to which that turns.
     let turns = matches!(told.sv.turning, Turning::Left | Turning::Right);
     let from_own_m = y_m - ground.sv_pose(0.0).position.y;
-    let of_ego = if from_own_m > 0.0 { LeftRight::Left } else { LeftRight::Right };
+    let of_ego = LeftRight::of_left(from_own_m);
     // The line of a road before a junction begins at that, and leads away from it.
     let (left, s_m) = match ground.junction {
         true => (of_ego == LeftRight::Right, -x_m - corner_m(ground.lanes)),

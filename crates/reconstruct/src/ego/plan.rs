@@ -17,7 +17,7 @@ use recrash_model::scenario::{
 use recrash_roads::check_on;
 
 /// Before it began to brake for its stop, the ego still rolls for so long under the system under test. [s]
-pub(crate) const ROLLS_S: f64 = 1.0;
+pub const ROLLS_S: f64 = 1.0;
 
 /// The simulation goes on for so long after the contact. [s]
 pub(crate) const GOES_ON_S: f64 = 5.0;

@@ -90,7 +90,7 @@ pub(super) struct Did<'a> {
 impl Did<'_> {
     /// Its way until then, beside that of the other one.
     fn way<'a>(&'a self, other: Option<&'a Did<'_>>, time_s: f64) -> Way<'a> {
-        let until = |track: &ActorTrack| ((time_s * 10.0).floor() as usize).min(track.states.len() - 1);
+        let until = |track: &ActorTrack| track.step_at(time_s);
         let by = other.map(|other| Other {
             states: &other.track.states[..=until(other.track)],
             half_m: 0.5 * (self.track.length_m + other.track.length_m),
@@ -219,7 +219,7 @@ impl Way<'_> {
     }
 
     fn is_still(&self, at: usize) -> bool {
-        self.states[at].velocity().length() < STANDS_MPS
+        self.states[at].stands()
     }
 
     fn last(&self) -> usize {

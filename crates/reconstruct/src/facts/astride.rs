@@ -1,6 +1,5 @@
 //! Told lines of the road that somebody's body is over, held against where it is.
 
-use crate::usual::STANDS_MPS;
 use recrash_model::account::{Astride, AstrideWhen, LaneLine, LeftRight};
 use recrash_model::geometry::Vec2;
 use recrash_model::math;
@@ -28,8 +27,8 @@ struct Over {
 
 /// Whether somebody's body is over the told line when it is told there; what it is over.
 pub(super) fn astride(told: Astride, scenario: &Scenario, track: &ActorTrack, time_s: f64) -> (CheckResult, String) {
-    let until = ((time_s * 10.0) as usize).min(track.states.len() - 1);
-    let stands = |step: &usize| track.states[*step].velocity().length() < STANDS_MPS;
+    let until = track.step_at(time_s);
+    let stands = |step: &usize| track.states[*step].stands();
     let at = match told.when {
         AstrideWhen::Start => Some(0),
         AstrideWhen::Stop => (0..=until).rfind(stands),

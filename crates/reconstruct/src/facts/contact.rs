@@ -18,7 +18,7 @@ const MIDDLE_M: f64 = 0.1;
 /// Whether a contact lies within a step of a told zone, and not on the other side of the vehicle than all told ones.
 pub(super) fn is_near(told: &[ContactZone], seen: ContactZone, outline: &OrientedBox, point: Vec2) -> bool {
     let aside_m = outline.to_local(point).y;
-    let other_side = side_of(told).is_some_and(|side| side * aside_m < -MIDDLE_M);
+    let other_side = side_of(told).is_some_and(|side| side.sign() * aside_m < -MIDDLE_M);
     zones_off(told, seen) <= 1 && !other_side
 }
 

@@ -26,7 +26,7 @@ use recrash_model::account::{
 };
 use recrash_model::geometry::OrientedBox;
 use recrash_model::metrics::CheckResult;
-use recrash_model::rollout::{ActorState, ActorTrack, Rollout, STEP_S};
+use recrash_model::rollout::{ActorState, ActorTrack, Rollout, step_of};
 use recrash_roads::Scenario;
 
 /// One of the two who touch.
@@ -209,7 +209,7 @@ impl<'a> Crash<'a> {
         let (told, time_s) = (self.told, self.touch.time_s);
         // Who is pushed moves when it touches; who was parked stood until then.
         let pushed = of_partner && told.pushed && told.thing.is_none();
-        let stands = |state: &ActorState| state.velocity().length() < STANDS_MPS;
+        let stands = |state: &ActorState| state.stands();
         let untouched = until_touched(self.rollout, track, time_s);
         let parked = match side.state == ContactState::Parked {
             true if side.comes_to_park() => untouched.last().is_some_and(stands),
@@ -281,7 +281,7 @@ impl<'a> Crash<'a> {
             format!("touched by another before: {}", track.kind.label().to_lowercase())
         });
         let comes_as_told = |by| {
-            let step = (self.touch.time_s * 10.0) as usize;
+            let step = step_of(self.touch.time_s);
             let met = self.partner_track;
             met.is_none_or(|met| thrown::comes_as_told(self.told, self.ego_track, [met, by], step))
         };
@@ -493,7 +493,7 @@ impl<'a> Crash<'a> {
 
     /// Number of the state in which they touch.
     fn step(&self) -> usize {
-        (self.touch.time_s / STEP_S) as usize
+        step_of(self.touch.time_s)
     }
 }
 

@@ -7,7 +7,7 @@ use crate::told::layout::strip_of;
 use crate::told::side::Turning;
 use crate::told::zones::side_of;
 use crate::usual::{LANE_M, NARROW_M, STANDS_MPS, SWINGS_OUT_RAD, TIGHTEST_M, WHEELED_M, swing_rad};
-use recrash_model::account::{ContactState, Origin};
+use recrash_model::account::{ContactState, LeftRight, Origin};
 use recrash_model::geometry::Vec2;
 use recrash_model::kinds::PartnerKind;
 use recrash_model::math;
@@ -141,7 +141,7 @@ pub(super) fn weaves(told: &Told, track: &ActorTrack, contact_s: f64) -> usize {
     if !told.comes_along_lanes() || told.cp.turning != Turning::No || told.is_thrown() {
         return 0;
     }
-    let until = ((contact_s / STEP_S) as usize).min(track.states.len() - 1);
+    let until = track.step_at(contact_s);
     let (first, last) = (&track.states[0], &track.states[until]);
     let along = Vec2::from_heading(first.heading);
     let aside_m = |state: &ActorState| along.cross(state.position() - first.position()).abs();
@@ -195,8 +195,8 @@ pub(super) fn drives_askew(told: &Told, ego: &ActorTrack, track: &ActorTrack) ->
 /// rub along it, but have left it.
 pub(super) fn leaves_whom_it_passes(told: &Told, ego: &ActorTrack, track: &ActorTrack, contact_s: f64) -> bool {
     let beside = !told.cp.zones.is_empty() && !told.cp.zones.iter().any(|zone| zone.is_front());
-    let step = ((contact_s / STEP_S) as usize).min(track.states.len() - 1);
-    let (met, other) = (&track.states[step], &ego.states[step.min(ego.states.len() - 1)]);
+    let step = track.step_at(contact_s);
+    let (met, other) = (&track.states[step], ego.at(step));
     let along = Vec2::from_heading(other.heading);
     let away_mps = along.cross(met.velocity()) * along.cross(met.position() - other.position()).signum();
     told.passes_from_behind() && beside && away_mps > 0.0
@@ -208,7 +208,7 @@ pub(super) fn goes_out_of_way(told: &Told, ego: &ActorTrack, track: &ActorTrack,
     if !told.comes_along_lanes() || told.cp.turning != Turning::No || told.is_thrown() || !stays {
         return false;
     }
-    let until = ((contact_s / STEP_S) as usize).min(track.states.len() - 1);
+    let until = track.step_at(contact_s);
     let (first, own) = (&track.states[0], &ego.states[0]);
     let along = Vec2::from_heading(first.heading);
     let left_m = |of: Vec2| along.cross(of - first.position());
@@ -251,7 +251,7 @@ pub(super) fn slides(kind: PartnerKind, states: &[ActorState]) -> bool {
 
 /// In how many ways somebody on wheels that drives forwards swings out to the other side before it turns: one for so much. [rad]
 pub(super) fn swings(told: &Told, track: &ActorTrack, contact_s: f64) -> usize {
-    let until = ((contact_s / STEP_S) as usize).min(track.states.len() - 1);
+    let until = track.step_at(contact_s);
     let wheels = VehicleSpec::of(told.cp.kind).length_m > WHEELED_M && told.cp.state != ContactState::Reversing;
     let swing = swing_rad(track.states[..=until].iter().map(|state| state.heading));
     if wheels && told.cp.slants.is_none() { (swing / SWINGS_OUT_RAD) as usize } else { 0 }
@@ -262,14 +262,14 @@ const BEGUN_RAD: f64 = 0.09;
 
 /// Whether somebody who has yet to turn for that has not begun to.
 pub(super) fn is_before_turn(told: &Told, track: &ActorTrack, contact_s: f64) -> bool {
-    let left = match told.cp.movement.filter(|_| told.cp.turns_later && told.sv.turning == Turning::No) {
-        Some(Movement::LeftTurn) => 1.0,
-        Some(Movement::RightTurn) => -1.0,
+    let to = match told.cp.movement.filter(|_| told.cp.turns_later && told.sv.turning == Turning::No) {
+        Some(Movement::LeftTurn) => LeftRight::Left,
+        Some(Movement::RightTurn) => LeftRight::Right,
         _ => return false,
     };
-    let until = ((contact_s / STEP_S) as usize).min(track.states.len() - 1);
+    let until = track.step_at(contact_s);
     let turned = math::wrap_angle(track.states[until].heading - track.states[0].heading);
-    told.sv.state.stands() && side_of(&told.sv.zones) == Some(left) && left * turned < BEGUN_RAD
+    told.sv.state.stands() && side_of(&told.sv.zones) == Some(to) && to.sign() * turned < BEGUN_RAD
 }
 
 impl Told {

@@ -3,7 +3,6 @@
 use crate::facts::astride::LEAST_M;
 use crate::told::crash::Told;
 use crate::told::layout;
-use crate::usual::STANDS_MPS;
 use recrash_model::account::{Astride, AstrideWhen, LaneLine, LaneWord};
 use recrash_model::kinds::PartnerKind;
 use recrash_model::math;
@@ -39,7 +38,7 @@ pub(super) fn lane(
     [ego, track]: [&ActorTrack; 2],
     time_s: f64,
 ) -> (CheckResult, String) {
-    let until = ((time_s * 10.0) as usize).min(track.states.len() - 1);
+    let until = track.step_at(time_s);
     // Who is told to be on the opposite side went there, or comes from there into its own.
     let at = if word == LaneWord::Opposing && !told.leaves_opposite() { until } else { 0 };
     let over = if ego.id == track.id { told.sv.astride } else { told.cp.astride };
@@ -47,7 +46,7 @@ pub(super) fn lane(
         lane_at((told, word), scenario, [ego, track], (at, over.filter(|over| over.when == when)))
     };
     let found = is_at(at, AstrideWhen::Start);
-    let stop = (0..=until).rfind(|step| track.states[*step].velocity().length() < STANDS_MPS);
+    let stop = (0..=until).rfind(|step| track.states[*step].stands());
     let stood = stop.map(|stop| is_at(stop, AstrideWhen::Stop));
     let partly = over.is_some_and(|over| over.when == AstrideWhen::Stop) && found.0 == CheckResult::NotShown;
     stood.filter(|stood| partly && stood.0 == CheckResult::Shown).unwrap_or(found)

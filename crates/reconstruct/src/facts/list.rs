@@ -108,3 +108,13 @@ pub(crate) fn facts(told: &Told, scenario: &Scenario, rollout: &Rollout) -> Vec<
 fn of(told: &Told) -> impl Iterator<Item = &'static Stated> {
     ALL.iter().filter(move |fact| (fact.told)(told))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_list_is_in_the_order_of_tables() {
+        assert_eq!(ALL.map(|fact| fact.kind), CheckKind::OF_ACCOUNTS);
+    }
+}

@@ -81,7 +81,7 @@ pub(super) struct Way<'a> {
 
 impl Way<'_> {
     fn until(&self) -> &[ActorState] {
-        let step = ((self.time_s * 10.0).floor() as usize).min(self.track.states.len() - 1);
+        let step = self.track.step_at(self.time_s);
         &self.track.states[..=step]
     }
 
@@ -177,7 +177,7 @@ impl Way<'_> {
     }
 
     fn stood(&self) -> bool {
-        self.until().iter().any(|state| state.velocity().length() < STANDS_MPS)
+        self.until().iter().any(|state| state.stands())
     }
 
     fn reversed(&self) -> bool {
@@ -186,10 +186,10 @@ impl Way<'_> {
 
     /// Whether it came from behind the other, and is faster, or has come beside it.
     fn passed(&self) -> bool {
-        let sets_out = self.until().iter().position(|state| state.velocity().length() > STANDS_MPS).unwrap_or(0);
+        let sets_out = self.until().iter().position(|state| !state.stands()).unwrap_or(0);
         let (first, last) = (&self.until()[sets_out], &self.until()[self.until().len() - 1]);
         let ahead = Vec2::from_heading(last.heading);
-        let other = self.other.map_or(self.met, |other| other.states[sets_out.min(other.states.len() - 1)]);
+        let other = self.other.map_or(self.met, |other| *other.at(sets_out));
         let faster = (last.velocity() - self.met.velocity()).dot(ahead) > FASTER_MPS;
         // A partner that goes another way is not faster along that.
         let angle = math::wrap_angle(last.heading - self.met.heading).to_degrees().abs();

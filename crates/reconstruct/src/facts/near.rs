@@ -32,10 +32,10 @@ impl Near {
     /// Whether somebody near moves while the ego stands, and is ahead of it then.
     pub(super) fn is_waited_for(ego: &ActorTrack, track: &ActorTrack, until: usize) -> bool {
         let way = Vec2::from_heading(ego.states[0].heading);
-        (0..=until.min(track.states.len() - 1)).any(|step| {
+        (0..=track.within(until)).any(|step| {
             let (own, other) = (&ego.states[step], &track.states[step]);
-            let stands = own.velocity().length() < STANDS_MPS;
-            stands && other.velocity().length() > STANDS_MPS && way.dot(other.position() - own.position()) > 0.0
+            let stands = own.stands();
+            stands && !other.stands() && way.dot(other.position() - own.position()) > 0.0
         })
     }
 
@@ -65,7 +65,7 @@ struct View<'a> {
 
 /// Whether that many metres to the left are on this side.
 fn is_on_side(side: LeftRight, left_m: f64) -> bool {
-    (side == LeftRight::Left) == (left_m > 0.0)
+    side.is_at(left_m)
 }
 
 impl<'a> View<'a> {
@@ -77,7 +77,7 @@ impl<'a> View<'a> {
 
     /// Its state at a step, or its last one.
     fn state(&self, step: usize) -> &ActorState {
-        &self.track.states[step.min(self.track.states.len() - 1)]
+        self.track.at(step)
     }
 
     /// How fast it is. [m/s]
@@ -180,7 +180,7 @@ impl<'a> View<'a> {
             First::Untold => true,
             First::Came => self.drove(),
             First::Gone => {
-                let sets_off = |step: &usize| self.ego.states[*step].velocity().length() > STANDS_MPS;
+                let sets_off = |step: &usize| !self.ego.states[*step].stands();
                 let stood = (0..until).find(|step| !sets_off(step));
                 let off = stood.and_then(|stood| (stood..until).find(sets_off));
                 off.is_some_and(|off| match self.near.place {

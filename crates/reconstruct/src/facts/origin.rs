@@ -7,7 +7,7 @@ use crate::usual::{LANE_M, STANDS_MPS};
 use recrash_model::account::{ContactState, CrashType, LeftRight, Origin};
 use recrash_model::geometry::Vec2;
 use recrash_model::math;
-use recrash_model::rollout::{ActorState, ActorTrack};
+use recrash_model::rollout::{ActorState, ActorTrack, step_of};
 use recrash_model::scenario::StripKind;
 use recrash_model::template::Movement;
 use recrash_roads::{RoadPart, Scenario};
@@ -88,12 +88,12 @@ const fn turned_off(told: &Told) -> bool {
 impl<'a> SetOut<'a> {
     /// The two when the partner sets out, and where they touch.
     fn of(told: &'a Told, ego: &'a ActorTrack, other: &'a ActorTrack, time_s: f64) -> Self {
-        let moves = other.states.iter().position(|state| state.velocity().length() > STANDS_MPS).unwrap_or(0);
+        let moves = other.states.iter().position(|state| !state.stands()).unwrap_or(0);
         // Of who backs into a space, or had turned off: when it begins to back.
         let backs = other.states.iter().position(|state| state.speed() < -STANDS_MPS);
         let sets_out = backs.filter(|_| told.cp.backs_in || turned_off(told)).unwrap_or(moves);
-        let met = &ego.states[((time_s * 10.0) as usize).min(ego.states.len() - 1)];
-        let (own, state) = (&ego.states[sets_out.min(ego.states.len() - 1)], &other.states[sets_out]);
+        let met = ego.at(step_of(time_s));
+        let (own, state) = (ego.at(sets_out), &other.states[sets_out]);
         let forward = Vec2::from_heading(own.heading);
         let way = state.position() - own.position();
         Self {
@@ -198,7 +198,7 @@ const ABREAST_M: f64 = 1.0;
 
 /// Whether two drive side by side before they touch.
 fn is_abreast(ego: &ActorTrack, other: &ActorTrack, time_s: f64) -> bool {
-    let step = (((time_s - ABREAST_S).max(0.0) * 10.0) as usize).min(ego.states.len() - 1);
+    let step = ego.step_at(time_s - ABREAST_S);
     let (own, state) = (&ego.states[step], &other.states[step]);
     let along_m = Vec2::from_heading(own.heading).dot(state.position() - own.position()).abs();
     along_m < 0.5 * (ego.length_m + other.length_m) + ABREAST_M
@@ -210,7 +210,7 @@ const ALONG: f64 = 0.7;
 /// Whether somebody who comes over a crosswalk came along a lane for vehicles.
 pub(super) fn comes_by_lane(told: &Told, scenario: &Scenario, other: &ActorTrack, time_s: f64) -> bool {
     let network = scenario.network();
-    let until = ((time_s * 10.0) as usize).min(other.states.len() - 1);
+    let until = other.step_at(time_s);
     let along = |state: &ActorState| {
         let lane = network.lane_at(state.position(), state.heading).map(|id| network.lane(id));
         lane.is_some_and(|lane| {
@@ -245,7 +245,7 @@ pub(super) fn begins_elsewhere(told: &Told, scenario: &Scenario, other: &ActorTr
 
 /// Whether somebody overlaps the ego across its way at a step.
 fn overlaps(ego: &ActorTrack, other: &ActorTrack, step: usize) -> bool {
-    let (own, state) = (&ego.states[step.min(ego.states.len() - 1)], &other.states[step]);
+    let (own, state) = (ego.at(step), &other.states[step]);
     let aside_m = Vec2::from_heading(own.heading).cross(state.position() - own.position()).abs();
     aside_m < 0.5 * (ego.width_m + other.width_m)
 }
@@ -266,8 +266,8 @@ impl Told {
 
     /// Whether a partner that is told behind the ego is beside its lane, or ahead of it; or one that is told ahead of it beside its lane.
     pub(super) fn is_beside_line(&self, ego: &ActorTrack, track: &ActorTrack) -> bool {
-        let sets_out = track.states.iter().position(|state| state.velocity().length() > STANDS_MPS).unwrap_or(0);
-        let (own, other) = (&ego.states[sets_out.min(ego.states.len() - 1)], &track.states[sets_out]);
+        let sets_out = track.states.iter().position(|state| !state.stands()).unwrap_or(0);
+        let (own, other) = (ego.at(sets_out), &track.states[sets_out]);
         let (forward, way) = (Vec2::from_heading(own.heading), other.position() - own.position());
         let overlap_m = 0.5 * (ego.width_m + track.width_m) - forward.cross(way).abs();
         self.is_in_line_ahead() && overlap_m < 0.0

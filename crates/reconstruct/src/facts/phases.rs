@@ -3,7 +3,7 @@
 use crate::told::phase::{Phase, words};
 use crate::usual::STANDS_MPS;
 use recrash_model::account::Striker;
-use recrash_model::rollout::{ActorState, ActorTrack};
+use recrash_model::rollout::{ActorState, ActorTrack, step_of};
 
 /// A phase that is shorter than this on the way from one gear to the other is none. [steps]
 const LEAST_STEPS: usize = 4;
@@ -16,7 +16,7 @@ fn shown(track: &ActorTrack, until: usize) -> Vec<Phase> {
         _ => Phase::Stands,
     };
     let mut runs: Vec<(Phase, usize)> = Vec::new();
-    for state in &track.states[..=until.min(track.states.len() - 1)] {
+    for state in &track.states[..=track.within(until)] {
         match runs.last_mut().filter(|(last, _)| *last == phase(state)) {
             Some((_, steps)) => *steps += 1,
             None => runs.push((phase(state), 1)),
@@ -48,7 +48,7 @@ fn without_turnarounds(phases: &[Phase]) -> Vec<Phase> {
 
 /// Whether somebody shows these phases last, and which it shows.
 pub(super) fn check(told: &[Phase], track: &ActorTrack, time_s: f64) -> (bool, String) {
-    let shown = shown(track, (time_s * 10.0).floor() as usize);
+    let shown = shown(track, step_of(time_s));
     let seen = shown.split_at(shown.len().saturating_sub(told.len().max(1))).1;
     // Where nobody says that it stood between.
     let turns = told.windows(2).any(|pair| !pair.contains(&Phase::Stands));
@@ -57,7 +57,7 @@ pub(super) fn check(told: &[Phase], track: &ActorTrack, time_s: f64) -> (bool, S
 
 /// Whether the one who is told to have backed first did.
 pub(super) fn back_in_order(first: Striker, ego: &ActorTrack, partner: &ActorTrack, time_s: f64) -> bool {
-    let until = (time_s * 10.0).floor() as usize;
+    let until = step_of(time_s);
     let backs = |track: &ActorTrack| track.states.iter().take(until + 1).position(|state| state.speed() < -STANDS_MPS);
     match (backs(ego), backs(partner)) {
         (Some(ego), Some(partner)) if first == Striker::Cp => partner < ego,

@@ -70,7 +70,7 @@ const TOWARDS_RAD: f64 = 2.0;
 impl<'a> Seen<'a> {
     pub(crate) fn new(told: &'a Told, rollout: &'a Rollout, time_s: f64) -> Self {
         let ego = rollout.ego_track();
-        Self { told, rollout, ego, until: ((time_s * 10.0) as usize).min(ego.states.len() - 1) }
+        Self { told, rollout, ego, until: ego.step_at(time_s) }
     }
 
     /// Whether all of the others who are told of are there as told; who is wanted, and who is there.
@@ -150,7 +150,7 @@ impl<'a> Seen<'a> {
         let Some(track) = self.rollout.actors.iter().find(|track| track.id == "cp" && is(track)) else { return false };
         let from = stands(self.ego, self.until).last().map_or(self.until, |(from, _)| *from);
         let gap_m = |step: usize| {
-            let state = &track.states[step.min(track.states.len() - 1)];
+            let state = track.at(step);
             state.position().distance(self.ego.states[step].position())
         };
         from < self.until && gap_m(from) > gap_m(self.until) + COMES_M
@@ -244,12 +244,12 @@ impl<'a> Seen<'a> {
     }
 
     fn mps(track: &ActorTrack, step: usize) -> f64 {
-        track.states[step.min(track.states.len() - 1)].velocity().length()
+        track.at(step).velocity().length()
     }
 
     /// How far ahead of the ego's front somebody is at a step, and how far to its left. [m]
     fn beside(&self, track: &ActorTrack, step: usize) -> (f64, f64) {
-        let (state, other) = (&self.ego.states[step], &track.states[step.min(track.states.len() - 1)]);
+        let (state, other) = (&self.ego.states[step], track.at(step));
         let (ahead, way) = (Vec2::from_heading(state.heading), other.position() - state.position());
         (ahead.dot(way) - 0.5 * self.ego.length_m, ahead.cross(way))
     }
@@ -302,7 +302,7 @@ impl<'a> Seen<'a> {
         let (mut ahead_m, mut left_m) = self.beside(track, self.until);
         // Of an ego that goes aside, in the lane in which it came.
         if self.told.sv_aside().is_some() {
-            let last = self.until.min(track.states.len() - 1);
+            let last = track.within(self.until);
             let (first, there) = (&self.ego.states[0], track.states[last].position());
             let along = Vec2::from_heading(first.heading);
             ahead_m = along.dot(there - self.ego.states[self.until].position()) - 0.5 * self.ego.length_m;
@@ -316,7 +316,7 @@ impl<'a> Seen<'a> {
     fn crosses(&self, extra: &Extra, track: &ActorTrack, within_m: f64) -> bool {
         // Who had gone by did so while the ego stood first.
         let set_off = extra.early.then(|| stands(self.ego, self.until).first().map(|(_, to)| *to)).flatten();
-        let last = set_off.unwrap_or(self.until).min(track.states.len() - 1);
+        let last = track.within(set_off.unwrap_or(self.until));
         (self.first_step(extra)..=last).any(|step| {
             let ((ahead_m, left_m), (_, before_m)) = (self.beside(track, step), self.beside(track, step - 1));
             let near = (0.0..within_m + self.stopping_m(step)).contains(&ahead_m);
@@ -343,12 +343,12 @@ impl<'a> Seen<'a> {
     /// Whether somebody who crosses comes from the told side.
     fn is_on_side(&self, extra: &Extra, track: &ActorTrack) -> bool {
         let (_, left_m) = self.beside(track, 0);
-        extra.side.is_none_or(|side| (side == LeftRight::Left) == (left_m > 0.0))
+        extra.side.is_none_or(|side| side.is_at(left_m))
     }
 
     /// Whether somebody comes towards the ego, and passes it on its left while it stands or slows, where it is told to wait for it.
     fn comes_by(&self, extra: &Extra, track: &ActorTrack) -> bool {
-        let last = self.until.min(track.states.len() - 1);
+        let last = track.within(self.until);
         (1..=last).any(|step| {
             let ((ahead_m, left_m), (before_m, _)) = (self.beside(track, step), self.beside(track, step - 1));
             let facing = math::wrap_angle(track.states[step].heading - self.ego.states[0].heading).abs();
@@ -395,7 +395,7 @@ impl<'a> Seen<'a> {
     /// Whether somebody stands in the next lane on the told side where the ego is touched.
     fn stands_beside(&self, extra: &Extra, track: &ActorTrack) -> bool {
         let (ahead_m, left_m) = self.beside(track, self.until);
-        let side = extra.side.is_none_or(|side| (side == LeftRight::Left) == (left_m > 0.0));
+        let side = extra.side.is_none_or(|side| side.is_at(left_m));
         if extra.between {
             return self.stays(track) && side && self.is_passed_between(track);
         }
@@ -416,7 +416,7 @@ impl<'a> Seen<'a> {
 
     /// Whether somebody is in the next lane on the told side where the ego is touched, and has come along beside it.
     fn drives_beside(&self, extra: &Extra, track: &ActorTrack) -> bool {
-        let side = |left_m: f64| extra.side.is_none_or(|side| (side == LeftRight::Left) == (left_m > 0.0));
+        let side = |left_m: f64| extra.side.is_none_or(|side| side.is_at(left_m));
         let next = |step: usize| {
             let (ahead_m, left_m) = self.beside(track, step);
             let aside = (0.5 * LANE_M..1.8 * LANE_M).contains(&left_m.abs());
@@ -428,8 +428,8 @@ impl<'a> Seen<'a> {
     /// Whether somebody goes backwards into the ego's lane, from the told side, and is ahead of it there.
     fn backs_out(&self, extra: &Extra, track: &ActorTrack) -> bool {
         let (ahead_m, left_m) = self.beside(track, self.until);
-        let side = extra.side.is_none_or(|side| (side == LeftRight::Left) == (self.beside(track, 0).1 > 0.0));
-        let backs = (0..=self.until).any(|step| track.states[step.min(track.states.len() - 1)].speed() < -STANDS_MPS);
+        let side = extra.side.is_none_or(|side| side.is_at(self.beside(track, 0).1));
+        let backs = (0..=self.until).any(|step| track.at(step).speed() < -STANDS_MPS);
         let comes = left_m.abs() < LANE_M + 0.5 * track.length_m && left_m.abs() + 1.0 < self.beside(track, 0).1.abs();
         backs && side && comes && (0.0..AHEAD_M + self.stopping_m(self.until) + PARKED_M).contains(&ahead_m)
     }
@@ -440,8 +440,8 @@ impl<'a> Seen<'a> {
         let came = partner.states[0].pose();
         let along = Vec2::from_heading(came.heading);
         let aside = |of: Vec2| along.cross(of - came.position);
-        let met = partner.states[self.until.min(partner.states.len() - 1)].position();
-        let at = track.states[if extra.slow { self.until.min(track.states.len() - 1) } else { 0 }].position();
+        let met = partner.at(self.until).position();
+        let at = track.states[if extra.slow { track.within(self.until) } else { 0 }].position();
         let beside = (0..=self.until).any(|step| (aside(partner.states[step].position()) - aside(at)).abs() > 0.8);
         let in_line = aside(at).abs() < 0.5 * LANE_M && beside;
         let by = aside(at).abs() < 1.2 * LANE_M && along.dot(met - at) > 0.0;
@@ -456,7 +456,7 @@ impl<'a> Seen<'a> {
         let outline = OrientedBox::new(track.states[0].pose(), track.length_m, track.width_m);
         let hidden = |step: usize| {
             let at = self.ego.states[step].position();
-            let way = partner.states[step.min(partner.states.len() - 1)].position() - at;
+            let way = partner.at(step).position() - at;
             let middle = Pose { position: at + way * 0.5, heading: math::atan2(way.y, way.x) };
             outline.overlaps(&OrientedBox::new(middle, way.length(), SIGHT_M))
         };
@@ -467,7 +467,7 @@ impl<'a> Seen<'a> {
     fn merges(&self, extra: &Extra, track: &ActorTrack) -> bool {
         let (ahead_m, left_m) = self.beside(track, self.until);
         let was = |step: usize| self.beside(track, step).1;
-        let side = extra.side.is_none_or(|side| (side == LeftRight::Left) == (was(0) > 0.0));
+        let side = extra.side.is_none_or(|side| side.is_at(was(0)));
         let beside = (0..self.until).any(|step| was(step).abs() > 0.7 * LANE_M);
         // In the lane that the ego may have left to make room.
         let lane_m = if self.told.sv_aside().is_some() { 1.3 } else { 0.4 } * LANE_M;
@@ -483,7 +483,7 @@ impl<'a> Seen<'a> {
         let (left_m, ego_left_m) = (ahead.cross(way), ahead.cross(moved));
         let in_line = left_m.abs() < 0.5 * LANE_M && (left_m - ego_left_m).abs() > 0.8;
         let by = left_m.abs() >= 0.5 * LANE_M && left_m.abs() < 1.5 * LANE_M;
-        let side = extra.side.is_none_or(|side| (side == LeftRight::Left) == (left_m > ego_left_m));
+        let side = extra.side.is_none_or(|side| side.is_at(left_m - ego_left_m));
         let (ahead_m, _) = self.beside(track, self.until);
         let near = ahead_m.abs() < CROSSING_M && (ahead_m < 0.0 || !extra.behind);
         self.stays(track) && ahead.dot(way) > 0.0 && near && (in_line || by) && side

@@ -2,7 +2,6 @@
 
 use crate::draft::signals::arm_of;
 use crate::told::crash::{AtRed, Told};
-use crate::usual::STANDS_MPS;
 use recrash_model::account::{Control as Said, ControlDevice, Obeyed, Origin, SignalState};
 use recrash_model::geometry::Vec2;
 use recrash_model::metrics::CheckResult;
@@ -97,7 +96,7 @@ pub(super) fn check(
     track: &ActorTrack,
     contact_s: f64,
 ) -> (CheckResult, String) {
-    let until = ((contact_s / STEP_S).floor() as usize).min(track.states.len() - 1);
+    let until = track.step_at(contact_s);
     let junction = scenario.draft().map.network().is_some_and(|map| !map.junctions.is_empty());
     if scenario.draft().control.is_empty() && !junction {
         return (CheckResult::CannotBeShown, "there is no junction to draw it at".to_owned());
@@ -269,7 +268,7 @@ fn passage(track: &ActorTrack, line: &Line, until: usize) -> Option<Passage> {
     for step in 0..=until {
         let (beside, past_m) = on(front(step));
         let at_line = beside && (-AT_LINE_M..=0.5).contains(&past_m);
-        let stands = |step: usize| track.states[step].velocity().length() < STANDS_MPS;
+        let stands = |step: usize| track.states[step].stands();
         if at_line && stands(step) {
             stood_s = stood_s.or(Some(STEP_S * step as f64));
         }

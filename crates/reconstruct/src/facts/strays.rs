@@ -11,7 +11,7 @@ use recrash_model::account::{Origin, Striker};
 use recrash_model::geometry::{OrientedBox, Vec2};
 use recrash_model::kinds::PartnerKind;
 use recrash_model::math;
-use recrash_model::rollout::{ActorState, ActorTrack, EventKind, Rollout, STEP_S};
+use recrash_model::rollout::{ActorState, ActorTrack, EventKind, Rollout, step_of};
 use recrash_roads::{RoadPart, Scenario};
 
 /// Whether one of the others who are drawn is elsewhere than it is wanted, or goes on at red.
@@ -40,7 +40,7 @@ pub(crate) fn strays(told: &Told, scenario: &Scenario, rollout: &Rollout) -> boo
         return true;
     }
     let Some(track) = touch.track else { return false };
-    let until = ((touch.time_s * 10.0) as usize).min(track.states.len() - 1);
+    let until = track.step_at(touch.time_s);
     if told.comes_along_kerb() && !told.parks_behind() && comes_from_strip(scenario, track, until) {
         return true;
     }
@@ -73,7 +73,7 @@ pub(super) fn until_touched<'a>(rollout: &Rollout, track: &'a ActorTrack, contac
         _ => false,
     });
     let until_s = touched.map_or(contact_s, |event| event.time_s.min(contact_s));
-    &track.states[..=((until_s / STEP_S) as usize).min(track.states.len() - 1)]
+    track.until(until_s)
 }
 
 /// For how long the partner is off its lane.
@@ -138,7 +138,7 @@ fn is_over_edge(told: &Told, scenario: &Scenario, track: &ActorTrack, contact_s:
     let strip = told.cp.lane.and_then(strip_of);
     let flank_m = 0.5 * track.width_m - OVER_EDGE_M;
     let narrow = track.width_m < NARROW_M;
-    let until = (((contact_s - OVER_EDGE_S) / STEP_S).max(0.0) as usize).min(track.states.len() - 1);
+    let until = track.step_at(contact_s - OVER_EDGE_S);
     let first = track.states[0].heading;
     let on_its_road = |state: &&ActorState| math::wrap_angle(state.heading - first).abs() < LEAVES_ROAD_RAD;
     let driven = track.states[..=until].iter().step_by(5).take_while(on_its_road);
@@ -169,7 +169,7 @@ const BESIDE_M: f64 = 0.3;
 fn comes_from_strip(scenario: &Scenario, track: &ActorTrack, until: usize) -> bool {
     let network = scenario.network();
     let flank_m = 0.5 * track.width_m - BESIDE_M;
-    let before = until.saturating_sub((BESIDE_S / STEP_S) as usize);
+    let before = until.saturating_sub(step_of(BESIDE_S));
     track.states[..before].iter().any(|state| {
         let flank = state.position() - Vec2::from_heading(state.heading).left() * flank_m;
         let lane = network.lane_at(flank, state.heading);

@@ -3,7 +3,6 @@
 use crate::told::crash::Told;
 use crate::told::lies::Lies;
 use crate::told::zones::side_of;
-use crate::usual::STANDS_MPS;
 use recrash_model::account::{ContactState, Kind, LeftRight};
 use recrash_model::geometry::{OrientedBox, Pose, Vec2};
 use recrash_model::kinds::PartnerKind;
@@ -29,13 +28,13 @@ pub(super) fn goes_under(
 ) -> bool {
     let body = |pose: Pose| OrientedBox::new(pose, ego.length_m - 2.0 * UNDER_M, ego.width_m - 2.0 * UNDER_M);
     if told.cp.kind == PartnerKind::Animal || told.dropped.is_some() {
-        let met = &ego.states[since.min(ego.states.len() - 1)];
+        let met = ego.at(since);
         let on = Vec2::from_heading(met.heading) * (met.speed().signum() * ONTO_M);
-        let moves = met.velocity().length() > STANDS_MPS;
+        let moves = !met.stands();
         return moves && body(Pose { position: met.position() + on, heading: met.heading }).overlaps(touched);
     }
     (since..ego.states.len()).any(|step| {
-        let lying = thing.map_or(*touched, |track| track.outline(step.min(track.states.len() - 1)));
+        let lying = thing.map_or(*touched, |track| track.outline(track.within(step)));
         body(ego.states[step].pose()).overlaps(&lying)
     })
 }
@@ -48,7 +47,7 @@ const AWAY_M: f64 = 3.0;
 /// Whether a thing comes along right behind somebody, and is left behind by it.
 pub(super) fn comes_off(thing: &ActorTrack, owner: &ActorTrack, until: usize) -> bool {
     let gap = |step: usize| {
-        let at = |track: &ActorTrack| track.states[step.min(track.states.len() - 1)].pose();
+        let at = |track: &ActorTrack| track.at(step).pose();
         let (own, lost) = (at(owner), at(thing));
         let (ahead, way) = (Vec2::from_heading(own.heading), own.position - lost.position);
         (ahead.dot(way) - 0.5 * (thing.length_m + owner.length_m), ahead.cross(way).abs() < OFF_BESIDE_M)
@@ -104,7 +103,7 @@ const FROM_ASIDE_M: f64 = 1.0;
 /// Whether what hangs or grows into the ego's lane comes from the told side.
 fn reaches_in(told: &Told, ego: &OrientedBox, other: &OrientedBox) -> Option<(String, bool, String)> {
     let side = told.reaches_in?;
-    let (sign, name) = if side == LeftRight::Left { (1.0, "left") } else { (-1.0, "right") };
+    let (sign, name) = (side.sign(), if side == LeftRight::Left { "left" } else { "right" });
     let farthest_m = other.corners().map(|corner| sign * ego.to_local(corner).y).into_iter().fold(f64::MIN, f64::max);
     let beside_m = farthest_m - ego.half_width;
     Some((
@@ -131,8 +130,8 @@ pub(super) fn check(told: &Told, ego: &OrientedBox, other: &OrientedBox) -> Opti
     let left_m = ego.to_local(other.centre).y;
     let there = (WHEELS_M.0..WHEELS_M.1).contains(&left_m.abs());
     let (side, of) = match side_of(&told.sv.zones) {
-        Some(side) if side > 0.0 => (" on the left", left_m > 0.0),
-        Some(_) => (" on the right", left_m < 0.0),
+        Some(LeftRight::Left) => (" on the left", left_m > 0.0),
+        Some(LeftRight::Right) => (" on the right", left_m < 0.0),
         None => ("", true),
     };
     Some((format!("under a wheel{side}"), there && of, format!("{left_m:.1} m to the left of the ego's middle")))

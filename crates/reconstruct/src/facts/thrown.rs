@@ -18,18 +18,18 @@ const FAST_MPS: f64 = 12.0;
 /// Whether who touched the partner first came from where it is told to, and as fast as it is.
 pub(super) fn comes_as_told(told: &Told, ego: &ActorTrack, [partner, other]: [&ActorTrack; 2], step: usize) -> bool {
     let road = Vec2::from_heading(ego.states[0].heading);
-    let met = partner.states[step.min(partner.states.len() - 1)].position();
-    let of_ego = ego.states[step.min(ego.states.len() - 1)].position();
+    let met = partner.at(step).position();
+    let of_ego = ego.at(step).position();
     // Of the ego, or of whom it touched.
     let on_side = |side: LeftRight| {
         let left_m = [met, of_ego].map(|from| road.cross(other.states[0].position() - from));
-        let sign = if side == LeftRight::Left { 1.0 } else { -1.0 };
+        let sign = side.sign();
         left_m.iter().any(|left_m| sign * left_m > ASIDE * LANE_M)
     };
-    let way = other.states[step.min(other.states.len() - 1)].position() - of_ego;
+    let way = other.at(step).position() - of_ego;
     let is_ahead = road.dot(way) > 0.0 && road.cross(way).abs() < 0.5 * LANE_M;
     let turned = math::wrap_angle(other.states[0].heading - ego.states[0].heading).abs();
-    let fastest = other.states[..=step.min(other.states.len() - 1)].iter().map(|state| state.velocity().length());
+    let fastest = other.states[..=other.within(step)].iter().map(|state| state.velocity().length());
     if told.pusher_fast && fastest.fold(0.0, f64::max) < FAST_MPS {
         return false;
     }

@@ -134,7 +134,7 @@ fn passes_right(told: &Told) -> bool {
     let in_lane = in_lane && !told.stands_beside(false) && told.thing.is_none();
     let touched = |zone: &ContactZone| matches!(zone, ContactZone::Right | ContactZone::FrontRight);
     let moves = told.cp.state == ContactState::Moving;
-    let passes = told.cp.movement == Some(Movement::Passing) && side_of(&told.sv.zones) == Some(-1.0)
+    let passes = told.cp.movement == Some(Movement::Passing) && side_of(&told.sv.zones) == Some(LeftRight::Right)
         || told.cp.passes_on() == Some(LeftRight::Right);
     let goes = matches!(told.cp.movement, Some(Movement::ChangingLanes | Movement::Merging | Movement::Passing));
     let goes = goes && moves && told.cp.aside == Some(LeftRight::Right) && !told.is_at_kerb();
@@ -188,7 +188,7 @@ impl Told {
     /// Whether the partner comes over the line between the directions to the ego's left, which is then in the lane beside that: from the
     /// opposite direction, out of a turn against the ego's way, or by the opposite side past it.
     fn is_met_over_line(&self) -> bool {
-        let left = side_of(&self.sv.zones) == Some(1.0);
+        let left = side_of(&self.sv.zones) == Some(LeftRight::Left);
         let against = matches!(
             (self.origin, self.cp.turning),
             (Origin::Opposite, Turning::No)

@@ -6,7 +6,7 @@ use crate::nearby::scene::{LOT_MPS, Scene};
 use crate::nearby::way::{BRAKES_MPS2, PASSES_BY_MPS, Way};
 use crate::others::stand::stands;
 use crate::told::others::Role;
-use crate::usual::{LANE_M, STANDS_MPS};
+use crate::usual::LANE_M;
 use recrash_model::account::{LeftRight, Origin};
 use recrash_model::geometry::{Pose, Vec2};
 
@@ -157,7 +157,7 @@ impl<'a> Scene<'a> {
         let rear = (0..=self.until).map(|step| self.at(step).0).fold(f64::MAX, f64::min) - self.front_m() - half_m;
         let (s_m, _) = self.at(self.until);
         let mut list = Vec::new();
-        if self.ego.states[self.until].velocity().length() > STANDS_MPS {
+        if !self.ego.states[self.until].stands() {
             let place = |behind_m: f64| self.road(s_m - self.front_m() - half_m - behind_m, 0.0);
             let [mean_mps, _] = self.speeds();
             // It brakes as they touch.
@@ -199,7 +199,7 @@ impl<'a> Scene<'a> {
             list.extend([0.0, -6.0, 6.0, -12.0].map(rests));
         }
         // Far over in its lane, where somebody comes between.
-        let sign = if side == LeftRight::Left { -1.0 } else { 1.0 };
+        let sign = -side.sign();
         let over = |way: &Way| {
             let away = Vec2::from_heading(way.from.heading).left() * (-sign * FAR_OVER_M);
             Way { from: Pose { position: way.from.position + away, ..way.from }, by: Vec::new(), ..*way }
@@ -218,7 +218,7 @@ impl<'a> Scene<'a> {
         };
         let mut list = Vec::new();
         for side in sides {
-            let sign = if side == LeftRight::Left { -1.0 } else { 1.0 };
+            let sign = -side.sign();
             for on_m in [8.0, 14.0, 4.0, 22.0] {
                 let speed_mps = self.speeds()[0].max(LOT_MPS) + PASSES_BY_MPS;
                 // Beside one that is parked it comes along the lane.
@@ -234,11 +234,11 @@ impl<'a> Scene<'a> {
     pub(super) fn mergers(&self, from: LeftRight, half_m: f64) -> Vec<Way> {
         let (s_m, t_m) = self.at(self.until);
         let to_m = self.told.sv_aside().map_or(t_m, |aside| aside.from_t_m);
-        let shifts_m = if from == LeftRight::Left { LANE_M } else { -LANE_M };
+        let shifts_m = from.sign() * LANE_M;
         let [mean_mps, _] = self.speeds();
         let place = |on_m: f64| self.road(s_m + self.front_m() + half_m + on_m, to_m - shifts_m);
         let way = |speed_mps: f64, on_m: f64| Way { shifts_m, ..Way::straight(place(on_m), speed_mps, self.contact_s) };
-        match self.ego.states[self.until].velocity().length() < STANDS_MPS {
+        match self.ego.states[self.until].stands() {
             true => [14.0, 18.0, 22.0].map(|on_m| way(MERGES_MPS, on_m)).into(),
             false => [6.0, 10.0, 14.0, 20.0].map(|on_m| way(mean_mps, on_m)).into(),
         }
@@ -252,7 +252,7 @@ impl<'a> Scene<'a> {
         let sides = side.map_or(vec![LeftRight::Left, LeftRight::Right], |side| vec![side]);
         let mut list = Vec::new();
         for side in sides {
-            let shifts_m = if side == LeftRight::Left { -LANE_M } else { LANE_M };
+            let shifts_m = -side.sign() * LANE_M;
             for to_m in [-LANE_M, LANE_M, 0.0] {
                 for speed_mps in self.speeds() {
                     for on_m in far {

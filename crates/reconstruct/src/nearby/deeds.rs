@@ -144,7 +144,7 @@ impl Scene<'_> {
 
     /// Across the ego's way, ahead of where it stands or slows.
     pub(super) fn crossing(&self, kind: Kind, side: LeftRight) -> Vec<Way> {
-        let sign = if side == LeftRight::Left { -1.0 } else { 1.0 };
+        let sign = -side.sign();
         let mut steps: Vec<usize> = stands(self.ego, self.until).into_iter().map(|(from, _)| from).collect();
         steps.push(self.until);
         let mut list = Vec::new();

@@ -27,10 +27,10 @@ pub(super) fn hinders_nobody(id: &str, scenario: &Scenario, (before, after): (&R
     };
     let first_s = contacts(after).first().map_or(f64::MAX, |(_, _, at_s)| *at_s);
     let of = |track: &ActorTrack, step: usize| {
-        let state = &track.states[step.min(track.states.len() - 1)];
+        let state = track.at(step);
         OrientedBox::new(state.pose(), track.length_m, track.width_m)
     };
-    let until = ((first_s * 10.0 + 10.0) as usize).min(track.states.len() - 1);
+    let until = track.step_at(first_s + 1.0);
     let clear = |step: usize| {
         let own = of(track, step);
         after.actors.iter().all(|other| other.id == id || own.gap(&of(other, step)) > CLEAR_M)
@@ -38,7 +38,7 @@ pub(super) fn hinders_nobody(id: &str, scenario: &Scenario, (before, after): (&R
     };
     let drives = VehicleSpec::of(track.kind).length_m > WHEELED_M;
     let on_road = |step: usize| !drives || scenario.network().on_road(track.states[step].position());
-    let met = &after.ego_track().states[..=((first_s * 10.0) as usize).min(after.ego_track().states.len() - 1)];
+    let met = after.ego_track().until(first_s);
     contacts(before) == contacts(after)
         && (0..=until).all(clear)
         && !is_cut_off(track, met)
@@ -55,7 +55,7 @@ const MINDS_M: f64 = 25.0;
 /// Whether somebody comes towards an ego that turns left across its way as it is touched.
 fn is_cut_off(track: &ActorTrack, ego: &[ActorState]) -> bool {
     let (first, last) = (&ego[0], &ego[ego.len() - 1]);
-    let state = &track.states[(ego.len() - 1).min(track.states.len() - 1)];
+    let state = track.at(ego.len() - 1);
     let ahead_m = Vec2::from_heading(first.heading).dot(state.position() - last.position());
     let oncoming = math::wrap_angle(state.heading - first.heading).abs() > 2.0 && state.speed() > COMES_MPS;
     let turns = math::wrap_angle(last.heading - first.heading) > BARS_RAD;

@@ -35,7 +35,7 @@ impl<'a> Scene<'a> {
         };
         let contact_s = rollout.events.iter().find_map(touched)?;
         let ego = rollout.ego_track();
-        let until = ((contact_s * 10.0) as usize).min(ego.states.len() - 1);
+        let until = ego.step_at(contact_s);
         let partner = rollout.actors.iter().find(|track| track.id == "cp");
         Some(Self { told, ground, ego, partner, contact_s, until, turned: false })
     }
@@ -123,7 +123,7 @@ impl<'a> Scene<'a> {
         let centre_m = self.ground.first_m() + corner_m;
         // The middle of the ego's road, and of the crossing one.
         let middle_m = 0.5 * LANE_M - self.ground.opposing_m;
-        let sign = if side == LeftRight::Left { -1.0 } else { 1.0 };
+        let sign = -side.sign();
         // Seen from the ego, who comes from the left drives on its own right: nearer to the ego.
         let lane_m = 0.5 * LANE_M * sign * if out { -1.0 } else { 1.0 };
         let pose = self.road(centre_m + lane_m, middle_m + sign * (corner_m + back_m));

@@ -94,7 +94,7 @@ impl Scene<'_> {
         else {
             return Vec::new();
         };
-        let side = if self.ground.beside(at).1 > 0.0 { LeftRight::Left } else { LeftRight::Right };
+        let side = LeftRight::of_left(self.ground.beside(at).1);
         self.kerb(side, 0.5 * length_m(actor)).iter().map(|way| way.plan(self.contact_s)).collect()
     }
 

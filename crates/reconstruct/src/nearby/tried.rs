@@ -10,7 +10,7 @@ use crate::usual::{STANDS_MPS, WALKS_MPS};
 use recrash_model::account::{Kind, KindGroup, LeftRight, Origin};
 use recrash_model::geometry::Pose;
 use recrash_model::kinds::PartnerKind;
-use recrash_model::rollout::ActorTrack;
+use recrash_model::rollout::{ActorTrack, step_of};
 use recrash_model::scenario::{Actor, StripKind};
 use recrash_model::vehicle::VehicleSpec;
 
@@ -183,7 +183,7 @@ impl<'a> Scene<'a> {
                 .into_iter()
                 .flat_map(|before_s| {
                     let at_s = (self.contact_s - before_s).max(0.5);
-                    let (s_m, _) = self.at(((at_s * 10.0) as usize).min(self.until));
+                    let (s_m, _) = self.at(step_of(at_s).min(self.until));
                     let lanes = 0..self.ground.oncoming.max(1);
                     lanes.map(move |lane| Way::straight(self.against_in(lane, s_m), DRIVES_MPS, at_s))
                 })

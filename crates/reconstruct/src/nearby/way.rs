@@ -64,7 +64,7 @@ impl Way {
 
     /// The same, and aside by so much.
     pub(super) fn aside(self, side: LeftRight, by_m: f64) -> Self {
-        Self { shifts_m: if side == LeftRight::Left { -by_m } else { by_m }, ..self }
+        Self { shifts_m: -side.sign() * by_m, ..self }
     }
 
     pub(super) fn plan(&self, contact_s: f64) -> ActorPlan {

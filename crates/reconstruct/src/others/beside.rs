@@ -77,13 +77,13 @@ impl Scene<'_> {
     /// Whom the partner goes round: in the line on which it came, where it has left that, or ahead of where it touches the ego.
     pub(super) fn passed(&self, extra: &Extra, (length_m, width_m): (f64, f64)) -> Option<ActorPlan> {
         let track = self.partner?;
-        let (came, met) = (track.states[0].pose(), track.states[self.until.min(track.states.len() - 1)].pose());
+        let (came, met) = (track.states[0].pose(), track.at(self.until).pose());
         let along = Vec2::from_heading(came.heading);
         let left = track.states[..=self.until]
             .iter()
             .find(|state| along.cross(state.position() - came.position).abs() > BESIDE_M);
         // Beside the line, on the ego's side, where it passes before it comes in.
-        let before = self.until.saturating_sub(PASSED_BEFORE).min(track.states.len() - 1);
+        let before = track.within(self.until.saturating_sub(PASSED_BEFORE));
         let over = self.told.comes_over || extra.goes_out;
         let aside_m = if over { 0.0 } else { PASSED_BESIDE_M };
         let to_ego = along.cross(self.ego.states[self.until].position() - came.position).signum();
@@ -97,7 +97,7 @@ impl Scene<'_> {
         let clear = |on_m: &f64| {
             let pose = Pose { position: stands(*on_m), heading: came.heading };
             let body = OrientedBox::new(pose, length_m, width_m);
-            (0..=self.until).all(|step| track.outline(step.min(track.states.len() - 1)).gap(&body) > BETWEEN_M)
+            (0..=self.until).all(|step| track.outline(track.within(step)).gap(&body) > BETWEEN_M)
         };
         let farther = (0..=FARTHER_STEPS).map(|step| on_m + f64::from(step) * FARTHER_M);
         let leaves = over && left.is_some() && !extra.slow;
@@ -116,7 +116,7 @@ impl Scene<'_> {
     fn crossing_m(&self, t_m: f64) -> Option<f64> {
         let track = self.partner?;
         let at = |step: usize| self.ground.beside(track.states[step].position());
-        let last = self.until.min(track.states.len() - 1);
+        let last = track.within(self.until);
         let across = |step: usize| {
             let (s_m, now_m) = at(step);
             let turned = math::wrap_angle(track.states[step].heading - self.ground.pose(s_m, 0.0).heading);
@@ -185,10 +185,10 @@ impl Scene<'_> {
     pub(super) fn stands_beside(&self, extra: &Extra, length_m: f64) -> ActorPlan {
         let usual = self.told.comes_from_side().or_else(|| self.partner_from()).unwrap_or(LeftRight::Right);
         let side = extra.side.unwrap_or(usual);
-        let t_m = if side == LeftRight::Right { LANE_M } else { -LANE_M };
+        let t_m = -side.sign() * LANE_M;
         let (s_m, _) = self.at(self.until);
         let there = |track: &ActorTrack| {
-            let state = &track.states[self.until.min(track.states.len() - 1)];
+            let state = track.at(self.until);
             let (at_m, beside_m) = self.ground.beside(state.position());
             let on_side = beside_m * t_m > 0.0 && beside_m.abs() > 0.6 * LANE_M;
             on_side.then_some((at_m + 0.5 * track.length_m + ROOM_M + 0.5 * length_m).max(s_m))
@@ -204,7 +204,7 @@ impl Scene<'_> {
         let sign = if extra.side.unwrap_or(usual) == LeftRight::Right { 1.0 } else { -1.0 };
         let (s_m, t_m) = self.at(self.until);
         let taken_m = |track: &ActorTrack| {
-            let outlines = (0..=self.until.min(track.states.len() - 1)).map(|step| track.outline(step));
+            let outlines = (0..=track.within(self.until)).map(|step| track.outline(step));
             let abreast = outlines.filter(|outline| {
                 let along_m = (self.ground.beside(outline.centre).0 - s_m).abs();
                 along_m < 0.5 * (track.length_m + length_m) + LEAD_GAP_M

@@ -1,15 +1,12 @@
 //! When somebody stood.
 
 use crate::told::others::Extra;
-use crate::usual::STANDS_MPS;
 use recrash_model::rollout::ActorTrack;
 
 /// When somebody stood until a step: first and last steps.
 pub(crate) fn stands(track: &ActorTrack, until: usize) -> Vec<(usize, usize)> {
     let mut list: Vec<(usize, usize)> = Vec::new();
-    for step in
-        (0..=until.min(track.states.len() - 1)).filter(|step| track.states[*step].velocity().length() < STANDS_MPS)
-    {
+    for step in (0..=track.within(until)).filter(|step| track.states[*step].stands()) {
         match list.last_mut().filter(|(_, last)| last + 1 == step) {
             Some((_, last)) => *last = step,
             None => list.push((step, step)),

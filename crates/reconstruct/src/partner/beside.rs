@@ -96,9 +96,7 @@ pub(super) fn line_y_m(told: &Told, staging: &Staging) -> Option<f64> {
             let either = || told.may_come_from_either().then(|| lane_m(-from_left_m)).flatten();
             Some(lane_m(from_left_m).or_else(either).unwrap_or(staging.cp.position.y + from_left_m))
         })
-        .or_else(|| {
-            beside(told).map(|side| staging.sv.position.y + if side == LeftRight::Left { LANE_M } else { -LANE_M })
-        })
+        .or_else(|| beside(told).map(|side| staging.sv.position.y + side.sign() * LANE_M))
 }
 
 /// Who drives over a line has its middle no farther beside that. [m]

@@ -198,7 +198,7 @@ pub(super) fn changed_behind(told: &Told, staging: &Staging, pace: &Pace, arm_m:
         None if ground.lanes > 1 => LeftRight::Right,
         None => return None,
     };
-    let line_y_m = staging.sv.position.y + if from == LeftRight::Left { LANE_M } else { -LANE_M };
+    let line_y_m = staging.sv.position.y + from.sign() * LANE_M;
     between_lines(staging, pace, arm_m, [(CHANGED_M + CHANGES_OVER_M, line_y_m), (CHANGED_M, staging.cp.position.y)])
 }
 
@@ -234,7 +234,7 @@ pub(super) fn came_over(told: &Told, ground: &Ground, arm_m: f64) -> Option<Besi
         None => return None,
     };
     let along = matches!(told.origin, Origin::Ahead | Origin::Behind);
-    along.then_some(Beside { left_m: if from == LeftRight::Left { LANE_M } else { -LANE_M }, arm_m })
+    along.then_some(Beside { left_m: from.sign() * LANE_M, arm_m })
 }
 
 /// Along one line until so far before the contact, over to another by so far, and on to the contact: where it begins, and the poses that it

@@ -313,7 +313,7 @@ fn thing_pace(told: &Told) -> Option<Pace> {
     // From the lane's edge where somebody drives in the next one.
     let abreast = told.extras.iter().any(|extra| matches!(extra.role, Role::Abreast | Role::Beside));
     let far = match (told.origin, side_of(&told.sv.zones)) {
-        (Origin::Beside { side }, Some(touched)) => (side == LeftRight::Left) != (touched > 0.0),
+        (Origin::Beside { side }, Some(touched)) => side != touched,
         _ => false,
     };
     let way_m = match abreast && told.thing.is_some() {

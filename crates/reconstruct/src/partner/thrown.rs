@@ -117,7 +117,7 @@ fn back(pose: Pose, by_m: f64) -> Pose {
 /// Where who comes along the lane beside the ego's touches a partner that is on its way then: its flank, or the corner at its rear.
 fn flank(told: &Told, ground: &Ground, partner: &OrientedBox, (length_m, width_m): (f64, f64)) -> Option<Pose> {
     let Some(Thrower::Beside(side)) = told.thrower else { return None };
-    let lane_m = if side == LeftRight::Left { -LANE_M } else { LANE_M };
+    let lane_m = -side.sign() * LANE_M;
     if !has_lane(ground, lane_m) {
         return None;
     }

@@ -178,7 +178,7 @@ fn is_of_junction(fact: &ActFact) -> bool {
 
 /// Who passes last passes on the side on which the ego is touched: what is told of the other side was said of something else.
 pub(super) fn passes_where_touched(acts: &mut [Doing], ego_zones: &[ContactZone]) {
-    let touched = side_of(ego_zones).map(|side| if side > 0.0 { LeftRight::Left } else { LeftRight::Right });
+    let touched = side_of(ego_zones);
     if let Some(last) = acts.last_mut().filter(|doing| doing.is_pass() && touched == doing.side.map(LeftRight::other)) {
         last.side = None;
     }

@@ -253,7 +253,7 @@ impl Told {
         let pass = sv.acts.iter().rfind(|fact| fact.act == Act::Pass && !fact.after_contact);
         let Some(pass) = pass.filter(|fact| text(&fact.source).contains("around")) else { return };
         let stands = self.cp.state.stands() && self.thing.is_none() && self.sv.state == ContactState::Moving;
-        let touched = side_of(&self.sv.zones).map(|left| if left > 0.0 { LeftRight::Left } else { LeftRight::Right });
+        let touched = side_of(&self.sv.zones);
         let there = match self.origin {
             Origin::Ahead | Origin::Parked { side: None } => touched,
             Origin::Beside { side } | Origin::Parked { side: Some(side) } => Some(side),
@@ -320,7 +320,7 @@ impl Told {
         if (swerves && (goes_on || departs) || steers) && self.sv.aside.is_none() && self.striker == Some(Striker::Cp) {
             self.sv.aside = match self.origin {
                 Origin::Beside { side } | Origin::Cross { side } => Some(side.other()),
-                _ => side_of(&self.sv.zones).map(|side| if side > 0.0 { LeftRight::Right } else { LeftRight::Left }),
+                _ => side_of(&self.sv.zones).map(LeftRight::other),
             };
         }
     }

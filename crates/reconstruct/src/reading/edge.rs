@@ -20,7 +20,7 @@ const OPEN_GATE: Size = Size { length_m: 4.0, width_m: 0.2 };
 /// On which side of the ego's road the partner stands, at its edge.
 pub(super) fn side(account: &Account, sv: &Side, cp: &Side, lies: Option<Lies>, origin: Origin) -> Option<LeftRight> {
     let partner = account.partner.as_ref()?;
-    let touched = side_of(&sv.zones).map(|side| if side > 0.0 { LeftRight::Left } else { LeftRight::Right });
+    let touched = side_of(&sv.zones);
     let beside = match origin {
         Origin::Beside { side } | Origin::Parked { side: Some(side) } => Some(side),
         _ => None,

@@ -29,7 +29,7 @@ pub(super) fn passed_beside(account: &Account, sv: &Side) -> Option<Origin> {
     let from = account.came_from.as_ref()?;
     let by_rule = matches!(from.source, Source::Rule { .. }) && from.value == Origin::Behind;
     let touched = side_of(&sv.zones).filter(|_| by_rule && sv.state == ContactState::Moving)?;
-    Some(Origin::Beside { side: if touched > 0.0 { LeftRight::Left } else { LeftRight::Right } })
+    Some(Origin::Beside { side: touched })
 }
 
 /// Where a partner is that is parked on a street, of which only the opposite side is told: at the left kerb, and in no lane. Who is told to head or
@@ -113,7 +113,7 @@ pub(super) fn out_of_stall(account: &Account, crash_type: CrashType, sv: &Side, 
     let stalls = account.place.features.iter().any(|feature| feature.value == RoadFeature::Stall);
     let backs = crash_type == CrashType::Backing && cp.state == ContactState::Reversing;
     let side = side_of(&sv.zones).filter(|_| stalls && backs)?;
-    Some(Origin::Stall { side: Some(if side > 0.0 { LeftRight::Left } else { LeftRight::Right }) })
+    Some(Origin::Stall { side: Some(side) })
 }
 
 /// Whether somebody who pulled out is told to have done so from a driveway.

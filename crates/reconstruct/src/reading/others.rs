@@ -11,8 +11,7 @@ use crate::told::others::{Extra, GIVEN_WAY, Role, Thrower};
 use crate::told::queue::{leaves_lane, sets_off, waits_ahead};
 use crate::told::zones::side_of;
 use recrash_model::account::{
-    self, Account, Act, ActFact, Astride, ContactState, Fact, Kind, KindGroup, LeftRight, Manner, Origin, Other,
-    StandReason,
+    self, Account, Act, ActFact, Astride, ContactState, Fact, Kind, KindGroup, Manner, Origin, Other, StandReason,
 };
 
 /// Things in the way, by their words.
@@ -362,7 +361,7 @@ pub(super) fn touch(account: &Account) -> Option<account::EarlierTouch> {
 /// On which side of the partner it was by where that was touched: along a flank, or at a corner of its front by which it came over.
 fn touched_side(account: &Account) -> Option<Thrower> {
     let zone = touch(account).filter(|touch| touch.by_partner)?.of_partner.filter(|zone| !zone.is_rear())?;
-    side_of(&[zone]).map(|left| Thrower::Beside(if left > 0.0 { LeftRight::Left } else { LeftRight::Right }))
+    side_of(&[zone]).map(Thrower::Beside)
 }
 
 /// From where who touched the partner first came, where that is told.

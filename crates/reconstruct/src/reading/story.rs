@@ -451,9 +451,7 @@ impl Story<'_> {
             }),
             _ if role == Role::Obstacle && self.is_back(other) => None,
             // On the side where the partner touches the ego.
-            _ if role == Role::Beside && self.is_between(told, other) => {
-                side_of(&told.sv.zones).map(|side| if side > 0.0 { LeftRight::Left } else { LeftRight::Right })
-            }
+            _ if role == Role::Beside && self.is_between(told, other) => side_of(&told.sv.zones),
             _ => passed.filter(|_| matches!(role, Role::Obstacle | Role::Beside)),
         }
     }

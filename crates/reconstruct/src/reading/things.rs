@@ -91,8 +91,7 @@ pub(super) fn reaches_in(thing: &Party, account: &Account, sv: &Side) -> Option<
     let hangs = |word: &str| word == "low" || HANGS.iter().any(|stem| word.starts_with(stem));
     let hangs = said.any(|words| words.split(|letter: char| !letter.is_alphanumeric()).any(hangs));
     let branch = hangs && told(&thing.kind) == Some(Kind::TreeBranch) && !lies_down(thing);
-    let side = side_of(&sv.zones).filter(|_| branch)?;
-    Some(if side > 0.0 { LeftRight::Left } else { LeftRight::Right })
+    side_of(&sv.zones).filter(|_| branch)
 }
 
 /// The size of a small thing, where the words for it tell more than its kind.

@@ -5,14 +5,14 @@ use crate::facts::keeping::ABSURD;
 use crate::facts::{list, strays};
 use crate::ground::way::Ground;
 use crate::nearby::placed;
-use crate::search::reconstruction::{Reconstruction, is_deed_left_open};
+use crate::search::reconstruction::{Reconstruction, is_left_open};
 use crate::told::crash::Told;
 use crate::told::others::Extra;
 use crate::touch::staging::Staging;
 use crate::touch::stagings::{MOST_TRIES, Stagings};
 use recrash_model::account::{Account, Untold};
 use recrash_model::geometry::OrientedBox;
-use recrash_model::metrics::{Check, CheckKind, CheckResult, Verdict};
+use recrash_model::metrics::{Check, CheckClass, Verdict};
 use recrash_model::rollout::{ActorTrack, Role, Rollout};
 use recrash_roads::check_on;
 use recrash_sim::Ego;
@@ -57,7 +57,7 @@ pub(super) fn searched(told: Told, account: &Account, most_runs: usize) -> Resul
             break;
         }
         // What shows all that is told has to be found better soon.
-        if search.best.as_ref().is_some_and(|best| best.cost.0 == 0) {
+        if search.best.as_ref().is_some_and(|best| best.cost.missed == 0) {
             search.most_runs = search.most_runs.min(search.runs + BETTER_RUNS);
         }
     }
@@ -67,9 +67,9 @@ pub(super) fn searched(told: Told, account: &Account, most_runs: usize) -> Resul
     // A partner that strays is worth less than others who are told of.
     let fuller = fullest
         .map(|(_, found)| found)
-        .filter(|found| (found.cost.2 || found.cost.4 > 0) && made.is_true() && left_open(&made) > 0);
+        .filter(|found| (found.cost.strays || found.cost.off > 0) && made.is_true() && left_open(&made) > 0);
     let fuller = fuller.map(Best::with_near).filter(|fuller| left_open(fuller) < left_open(&made));
-    let strays = fuller.is_some() || cost.1 || cost.2;
+    let strays = fuller.is_some() || cost.others_stray || cost.strays;
     Ok(Found { made: fuller.unwrap_or(made), strays })
 }
 
@@ -108,7 +108,7 @@ impl Search {
         }
         let verdict = Verdict { checks: list::facts(told, &scenario, &rollout) };
         // What misses more than the best is looked at no closer.
-        if self.best.as_ref().is_some_and(|best| verdict.failures().count() > best.cost.0) {
+        if self.best.as_ref().is_some_and(|best| verdict.failures().count() > best.cost.missed) {
             return self.is_enough();
         }
         let others = strays::others_stray(told, &scenario, &rollout);
@@ -116,14 +116,21 @@ impl Search {
         let off = strays::off_its_way(told, &scenario, &rollout);
         // From beside the road it may show them by another way than along the ego's.
         let along = told.comes_along_lanes();
-        let unseen = |check: &&Check| along && is_deed_left_open(check) || is_place_left_open(check);
-        let unseen = verdict.checks.iter().filter(unseen).count();
-        let shows = (verdict.failures().count(), others, strays, unseen);
-        let cost = (shows.0, shows.1, shows.2, shows.3, off + ZONE_STEP * staging.cost.0 as usize);
+        let unseen = |check: &&Check| {
+            let class = check.kind.class();
+            is_left_open(check) && (along && class.is_deed() || class == CheckClass::Astride)
+        };
+        let cost = Cost {
+            missed: verdict.failures().count(),
+            others_stray: others,
+            strays,
+            unseen: verdict.checks.iter().filter(unseen).count(),
+            off: off + ZONE_STEP * staging.cost.0 as usize,
+        };
         let missing = verdict.checks.iter().filter(|check| is_of_others(check)).count();
         let better = self.best.as_ref().is_none_or(|best| cost < best.cost);
         let fuller =
-            self.fullest.as_ref().is_none_or(|(fewest, _)| missing < *fewest) && (cost.0, cost.1) == (0, false);
+            self.fullest.as_ref().is_none_or(|(fewest, _)| missing < *fewest) && cost.missed == 0 && !cost.others_stray;
         if better || fuller {
             let assumed = told.assumed.iter().cloned().chain(told.extras.iter().filter_map(Extra::assumed)).collect();
             let made = Reconstruction { draft: scenario.draft().clone(), rollout, verdict, assumed };
@@ -135,7 +142,7 @@ impl Search {
                 self.best = Some(found);
             }
         }
-        shows == (0, false, false, 0) && off == 0 || self.is_enough()
+        cost.shows_all() && off == 0 || self.is_enough()
     }
 
     /// Whether what was found is good enough for so many runs.
@@ -145,8 +152,8 @@ impl Search {
     }
 }
 
-/// Whether nobody is in touch with anybody from the beginning: a scenario leaves them 2 cm of room for rounding, and who parts within the
-/// first step has had no contact to be recorded.
+/// Whether nobody is in touch with anybody from the beginning: a scenario leaves them 2 cm of room for rounding, and road users that
+/// part within the first step have had no contact to be recorded.
 fn starts_apart(rollout: &Rollout) -> bool {
     let there = |track: &&ActorTrack| track.role != Role::Part && track.is_present(0) && !track.states.is_empty();
     let boxes: Vec<OrientedBox> = rollout.actors.iter().filter(there).map(|track| track.outline(0)).collect();
@@ -157,30 +164,51 @@ fn starts_apart(rollout: &Rollout) -> bool {
 /// Less of one in the other is rounding. [m]
 const ROUNDING_M: f64 = 1e-6;
 
-/// Whether one of the two is told over a line of the road, and is not.
-fn is_place_left_open(check: &Check) -> bool {
-    matches!(check.kind, CheckKind::SvAstride | CheckKind::CpAstride) && check.result == CheckResult::CannotBeShown
-}
-
 /// Whether a fact of others in the story is told, and not shown.
 fn is_of_others(check: &Check) -> bool {
-    matches!(check.kind, CheckKind::Reason | CheckKind::Others) && check.result == CheckResult::CannotBeShown
+    check.kind.class() == CheckClass::Others && is_left_open(check)
 }
 
 /// Whether an act of one of the two is told, and not to be seen.
 pub(super) fn is_of_acts(check: &Check) -> bool {
-    matches!(check.kind, CheckKind::SvActs | CheckKind::CpActs) && check.result == CheckResult::CannotBeShown
+    check.kind.class() == CheckClass::Acts && is_left_open(check)
 }
 
 pub(super) fn left_open(made: &Reconstruction) -> usize {
     made.verdict.checks.iter().filter(|check| is_of_others(check)).count()
 }
 
-/// The best of what was tried: told facts that are not shown, then whether others are not as told, whether the partner strays, how many
-/// told acts are not to be seen, and how far it is off its lane and weaves.
+/// What a staging lacks; of two the one with the less is better, by the first field in which they differ.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct Cost {
+    /// Stated facts that are not shown.
+    missed: usize,
+    /// Others are not where they are stated.
+    others_stray: bool,
+    /// The partner strays.
+    strays: bool,
+    /// Stated acts and lines that are not to be seen.
+    unseen: usize,
+    /// How far the partner is off its lane, weaves, and touches beside the stated zones.
+    off: usize,
+}
+
+impl Cost {
+    /// Whether every stated fact that can be is shown, and nobody strays.
+    const fn nobody_strays(&self) -> bool {
+        self.missed == 0 && !self.others_stray && !self.strays
+    }
+
+    /// Whether every stated fact is shown, and nobody strays.
+    const fn shows_all(&self) -> bool {
+        self.nobody_strays() && self.unseen == 0
+    }
+}
+
+/// The best of what was tried.
 #[derive(Clone)]
 struct Best {
-    cost: (usize, bool, bool, usize, usize),
+    cost: Cost,
     made: Reconstruction,
     told: Told,
     ground: Rc<Ground>,
@@ -188,24 +216,24 @@ struct Best {
 
 impl Best {
     /// Whether every told fact is shown, and nobody strays.
-    fn shows_all(&self) -> bool {
-        matches!(self.cost, (0, false, false, 0, _))
+    const fn shows_all(&self) -> bool {
+        self.cost.shows_all()
     }
 
     /// Whether every told fact is shown, nobody strays, and the partner's way is none that nobody would drive.
     const fn is_good(&self) -> bool {
-        matches!(self.cost, (0, false, false, ..)) && !self.is_absurd()
+        self.cost.nobody_strays() && !self.is_absurd()
     }
 
     /// Whether the partner's way is one that nobody would drive.
     const fn is_absurd(&self) -> bool {
-        self.cost.4 >= 2 * ABSURD
+        self.cost.off >= 2 * ABSURD
     }
 
     /// The same with those who have no part in what the ego does, where nothing told is missed for them.
     fn with_near(self) -> Reconstruction {
         let Self { cost, made, told, ground } = self;
-        if cost.0 > 0 || told.wanted.is_empty() {
+        if cost.missed > 0 || told.wanted.is_empty() {
             return made;
         }
         let (draft, rollout, assumed) = placed::with_near(&told, &ground, (made.draft.clone(), made.rollout.clone()));

@@ -1,6 +1,6 @@
 //! A crash, reconstructed.
 
-use recrash_model::metrics::{Answer, Check, CheckKind, CheckResult, Verdict};
+use recrash_model::metrics::{Answer, Check, CheckResult, Verdict};
 use recrash_model::rollout::Rollout;
 use recrash_model::scenario::ScenarioDraft;
 
@@ -36,8 +36,11 @@ impl Reconstruction {
 }
 
 /// Whether something that the two are told to have done is not to be seen.
-pub(super) fn is_deed_left_open(check: &Check) -> bool {
-    use CheckKind::{CpActs, CpMovement, PassedOn, SvActs, SvMovement};
-    let is_deed = matches!(check.kind, SvMovement | CpMovement | SvActs | CpActs | PassedOn);
-    is_deed && check.result == CheckResult::CannotBeShown
+fn is_deed_left_open(check: &Check) -> bool {
+    check.kind.class().is_deed() && is_left_open(check)
+}
+
+/// Whether a stated fact is not to be seen.
+pub(super) fn is_left_open(check: &Check) -> bool {
+    check.result == CheckResult::CannotBeShown
 }

@@ -5,7 +5,7 @@ use crate::search::best::{Found, acts_left_open, is_of_acts, left_open, searched
 use crate::search::reconstruction::Reconstruction;
 use crate::told::crash::Told;
 use recrash_model::account::{Account, Untold};
-use recrash_model::metrics::{Check, CheckKind, Verdict};
+use recrash_model::metrics::{CheckClass, CheckKind, Verdict};
 use recrash_roads::check;
 
 /// So many are run in all.
@@ -69,8 +69,7 @@ fn in_order(told: Told, account: &Account, most_runs: usize) -> Result<Found, Un
 
 /// Whether no told fact but a light is shown otherwise: that may have had no time to change.
 fn is_true_but_for_signals(made: &Reconstruction) -> bool {
-    let is_signal = |check: &Check| matches!(check.kind, CheckKind::SvControl | CheckKind::CpControl);
-    made.verdict.failures().all(is_signal)
+    made.verdict.failures().all(|check| check.kind.class() == CheckClass::Signal)
 }
 
 /// Who was behind the ego in a queue stands close to it; farther off where nothing true is found with that.

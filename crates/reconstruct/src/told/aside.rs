@@ -90,7 +90,7 @@ impl Told {
 
     /// To which side the ego leaves its line, by what it stopped for or how it moves, where that is told or follows from where the partner is.
     fn sv_towards(&self, stopped: Option<Act>, movement: Movement) -> Option<LeftRight> {
-        let (left, right) = (LeftRight::Left, LeftRight::Right);
+        let right = LeftRight::Right;
         // Who makes room for another before it stops does so away from it.
         let pulls_aside = matches!(stopped, Some(Act::PullOver | Act::Park)) && self.origin == Origin::Opposite;
         let makes_room =
@@ -106,7 +106,7 @@ impl Told {
         // Nobody parks, or makes room, in the way of who comes towards it.
         let pulls_over = movement == Movement::ParkingManeuver && self.origin == Origin::Opposite;
         let towards = towards.or(pulls_over.then_some(right));
-        towards.or_else(|| side_of(&self.sv.zones).map(|side| if (side > 0.0) != makes_room { left } else { right }))
+        towards.or_else(|| side_of(&self.sv.zones).map(|side| if makes_room { side.other() } else { side }))
     }
 
     /// How far the ego leaves its line that drifts or dodges: no farther than its lane, where it is told to have stayed in that, or makes
@@ -149,16 +149,14 @@ impl Told {
             _ => return None,
         };
         // Who moves to its left came along on its right.
-        let own_left = self.cp.aside.map(|side| if side == LeftRight::Left { -1.0 } else { 1.0 });
+        let own_left = self.cp.aside.map(|side| -side.sign());
         let from_left = own_left.map(|own| own * against).or_else(|| match self.origin {
             // Who parks does so on the right; who came along behind the ego leaves its lane.
             _ if self.cp.movement == Some(Movement::ParkingManeuver) => Some(against),
-            Origin::Behind if self.cp.merges_in => side_of(&self.sv.zones),
-            Origin::Behind => side_of(&self.sv.zones).map(|side| -side),
-            Origin::Beside { side } | Origin::Parked { side: Some(side) } => {
-                Some(if side == LeftRight::Left { 1.0 } else { -1.0 })
-            }
-            _ => side_of(&self.sv.zones),
+            Origin::Behind if self.cp.merges_in => side_of(&self.sv.zones).map(LeftRight::sign),
+            Origin::Behind => side_of(&self.sv.zones).map(|side| -side.sign()),
+            Origin::Beside { side } | Origin::Parked { side: Some(side) } => Some(side.sign()),
+            _ => side_of(&self.sv.zones).map(LeftRight::sign),
         });
         Some(from_left.unwrap_or(if against > 0.0 { -1.0 } else { 1.0 }) * way_m)
     }

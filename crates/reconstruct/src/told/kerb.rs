@@ -44,9 +44,8 @@ impl Told {
     /// Whether a parked partner's door touches that is on the ego's side only where the partner faces the other way.
     pub(crate) fn is_parked_against(&self) -> bool {
         let Origin::Parked { side: Some(side) } = self.origin else { return false };
-        let away = if side == LeftRight::Left { 1.0 } else { -1.0 };
         let stands = self.cp.state == ContactState::Parked && self.thing.is_none() && !self.diagonal;
-        stands && self.door == Some(Striker::Cp) && side_of(&self.cp.zones) == Some(away)
+        stands && self.door == Some(Striker::Cp) && side_of(&self.cp.zones) == Some(side)
     }
 
     /// Whether the partner parks, forwards, behind an ego that stands at the kerb.
@@ -80,7 +79,7 @@ impl Told {
             && ahead
             && street
             && self.sv.zones.iter().all(|zone| zone.is_front())
-            && side_of(&self.sv.zones) == Some(1.0)
+            && side_of(&self.sv.zones) == Some(LeftRight::Left)
     }
 
     /// Whether an ego that stood at the kerb sets off straight on, or did, and touches one that stands there ahead of it: it is beside the lanes.

@@ -12,15 +12,10 @@ use recrash_model::kinds::PartnerKind;
 use recrash_model::template::Movement;
 use recrash_model::zones::ContactZone;
 
-/// The side on which somebody is touched.
-fn touched_side(zones: &[ContactZone]) -> Option<LeftRight> {
-    side_of(zones).map(|side| if side > 0.0 { LeftRight::Left } else { LeftRight::Right })
-}
-
 impl Told {
     /// On which side the ego is touched.
     pub(crate) fn touched_side(&self) -> Option<LeftRight> {
-        touched_side(&self.sv.zones)
+        side_of(&self.sv.zones)
     }
 
     /// Whether the partner comes along the ego's lane behind it and passes it.
@@ -48,7 +43,7 @@ impl Told {
         let over = self.cp_drives_over() && self.cp.is_over(LaneLine::Lanes);
         let moves = self.cp.state == ContactState::Moving && (!self.cp.stood_first || over) && !self.is_at_kerb();
         let splits = (self.layout.splits || over) && self.origin == Origin::Behind && keeps && moves;
-        self.cp.passes_on().or_else(|| touched_side(&self.sv.zones)).filter(|_| splits)
+        self.cp.passes_on().or_else(|| side_of(&self.sv.zones)).filter(|_| splits)
     }
 
     /// Whether the partner rolls back in line: from straight ahead, its rear against the ego's front.
@@ -69,13 +64,13 @@ impl Told {
     /// On which side of the ego the partner passes it in the lane for buses, in which the ego is not.
     pub(crate) fn bus_lane(&self) -> Option<LeftRight> {
         let alone = self.cp.lane == Some(LaneWord::Bus) && self.sv.lane != Some(LaneWord::Bus);
-        self.cp.passes_on().or_else(|| touched_side(&self.sv.zones)).filter(|_| alone && self.origin == Origin::Behind)
+        self.cp.passes_on().or_else(|| side_of(&self.sv.zones)).filter(|_| alone && self.origin == Origin::Behind)
     }
 
     /// Whether the ego changes into the lane in which the partner passes it, and meets it on that side.
     fn leaves_to_who_passes(&self) -> bool {
         let left_m = self.sv_aside().map_or(0.0, |aside| aside.from_t_m - aside.to_t_m);
-        let touched = side_of(&self.sv.zones).unwrap_or(0.0);
+        let touched = side_of(&self.sv.zones).map_or(0.0, LeftRight::sign);
         self.cp.movement == Some(Movement::Passing) && left_m * touched >= LANE_M
     }
 
@@ -85,7 +80,7 @@ impl Told {
         let to = if by_m < 0.0 { LeftRight::Left } else { LeftRight::Right };
         let there = match self.origin {
             Origin::Beside { side } => side == to,
-            Origin::Behind => side_of(&self.sv.zones) == Some(if to == LeftRight::Left { 1.0 } else { -1.0 }),
+            Origin::Behind => side_of(&self.sv.zones) == Some(to),
             _ => false,
         };
         let leaves = |doing: &Doing| doing.is_aside() && !doing.is_pass();
@@ -101,7 +96,7 @@ impl Told {
     /// Whether the partner stood behind the ego and changes lanes to the side on which it touches it then: out of the ego's lane.
     pub(crate) fn goes_out(&self) -> bool {
         let to = self.cp.aside.or_else(|| self.cp.passes_on());
-        let touched = touched_side(&self.sv.zones);
+        let touched = side_of(&self.sv.zones);
         let changes = self.cp.movement == Some(Movement::ChangingLanes);
         changes && self.cp.stood_first && to.is_some() && to == touched && !self.plainly
     }

@@ -160,7 +160,6 @@ impl Told {
             ContactState::Moving if side.is_slow() => 3.0,
             ContactState::Moving if side.stood_first => 4.0,
             ContactState::Moving => match side.kind {
-                PartnerKind::Pedestrian => WALKS_MPS,
                 PartnerKind::Animal => 4.0,
                 PartnerKind::FixedObject if self.is_sliding() => SLIDES_MPS,
                 PartnerKind::OtherNonMotorist if size_of(side).0 <= ROBOT_M => WALKS_MPS,

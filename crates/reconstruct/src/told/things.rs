@@ -38,8 +38,7 @@ impl Told {
     /// On which side of its front the ego meets a chain or a wire that hangs across its lane.
     pub(crate) fn meets_chain(&self) -> Option<LeftRight> {
         let hangs = self.thing == Some(Kind::Chain) && self.lies.is_none() && self.edge.is_none();
-        let side = side_of(&self.sv.zones).filter(|_| hangs && self.sv.zones.iter().all(|zone| zone.is_front()))?;
-        Some(if side > 0.0 { LeftRight::Left } else { LeftRight::Right })
+        side_of(&self.sv.zones).filter(|_| hangs && self.sv.zones.iter().all(|zone| zone.is_front()))
     }
 
     /// Whether the partner is a chain, a closed gate or a barrier, which bars the ego's way: no side of it is told.

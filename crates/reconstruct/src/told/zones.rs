@@ -1,5 +1,6 @@
 //! Zones: on which side of somebody they lie, and how far one is off those that are told.
 
+use recrash_model::account::LeftRight;
 use recrash_model::zones::ContactZone;
 
 /// Steps around the box from the nearest told zone; none where none is told. Of several on one flank all count on that, and what is told to be
@@ -33,13 +34,13 @@ fn is_whole_end(told: &[ContactZone], seen: ContactZone) -> bool {
 /// Who is told to touch with its rear is so many steps off with its front. [steps]
 const REAR_OFF: u32 = 2;
 
-/// The side on which these zones lie, front and rear aside: 1 left, -1 right; nothing where they lie on both, or on neither.
-pub(crate) fn side_of(zones: &[ContactZone]) -> Option<f64> {
+/// The side on which these zones lie, front and rear aside; nothing where they lie on both, or on neither.
+pub(crate) fn side_of(zones: &[ContactZone]) -> Option<LeftRight> {
     let side = |zone: &ContactZone| match zone {
-        ContactZone::FrontLeft | ContactZone::Left | ContactZone::RearLeft => 1.0,
-        ContactZone::FrontRight | ContactZone::Right | ContactZone::RearRight => -1.0,
-        _ => 0.0,
+        ContactZone::FrontLeft | ContactZone::Left | ContactZone::RearLeft => Some(LeftRight::Left),
+        ContactZone::FrontRight | ContactZone::Right | ContactZone::RearRight => Some(LeftRight::Right),
+        ContactZone::Front | ContactZone::Rear | ContactZone::Top | ContactZone::Bottom => None,
     };
-    let first = zones.iter().map(side).find(|side| *side != 0.0)?;
-    zones.iter().all(|zone| side(zone) != -first).then_some(first)
+    let first = zones.iter().find_map(side)?;
+    zones.iter().all(|zone| side(zone) != Some(first.other())).then_some(first)
 }

@@ -228,7 +228,7 @@ const EARLY_RAD: f64 = 0.6;
 const FOLLOWS_BESIDE_M: [f64; 3] = [0.0, 0.6, 1.0];
 
 fn follows_beside(told: &Told) -> impl Iterator<Item = f64> + use<> {
-    let to_right = side_of(&told.sv.zones).map(|left| -left);
+    let to_right = side_of(&told.sv.zones).map(|side| -side.sign());
     let beside_m = if to_right.is_some() { &FOLLOWS_BESIDE_M[..] } else { &FOLLOWS_BESIDE_M[..1] };
     beside_m.iter().map(move |beside_m| to_right.unwrap_or(1.0) * beside_m)
 }

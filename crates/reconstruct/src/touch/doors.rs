@@ -61,7 +61,7 @@ fn openings(told: &Told, owner: &Side, of_sv: bool) -> Vec<Opening> {
     };
     // Seen from the partner the ego is on the other side.
     let usual = if of_sv { other_is } else { -other_is };
-    let first = side_of(&owner.zones).unwrap_or(usual);
+    let first = side_of(&owner.zones).map_or(usual, LeftRight::sign);
     let (front_m, rear_m) = (0.5 * length_m - FRONT_HINGE_M, -REAR_HINGE_M);
     let is_rear = owner.zones.iter().any(|zone| zone.is_rear());
     let hinges = match told.layout.rear_door {
@@ -209,7 +209,7 @@ fn met_points(told: &Told, other: &Side) -> Vec<(f64, f64)> {
     let mut zones = if other.zones.is_empty() { usual.to_vec() } else { other.zones.clone() };
     if told.layout.stood_open.is_some() || drives_open(told, told.door == Some(Striker::Sv)) {
         let side = side_of(&other.zones);
-        zones.extend(side.map(|side| if side > 0.0 { Z::FrontLeft } else { Z::FrontRight }));
+        zones.extend(side.map(|side| if side == LeftRight::Left { Z::FrontLeft } else { Z::FrontRight }));
     }
     zones.iter().flat_map(|zone| points(*zone).iter().copied()).collect()
 }

@@ -6,7 +6,6 @@ use crate::told::doing::Doing;
 use crate::told::side::{Side, Turning, size_of};
 use crate::told::zones::side_of;
 use crate::touch::boxes::velocity;
-use crate::touch::headings::sign;
 use crate::touch::lanes::turn_m;
 use crate::usual::{LANE_M, NARROW_M};
 use recrash_model::account::{ContactState, CrashType, Origin, Striker};
@@ -99,7 +98,7 @@ impl Told {
     /// Whether a partner that is told to go the wrong way along a crossing road is on the side of it where its way is the right one.
     pub(super) fn goes_right_way(&self, cp: Pose) -> bool {
         let wrong_way = self.cp.movement == Some(Movement::WrongWay);
-        matches!(self.origin, Origin::Cross { side } if wrong_way && sign(side) * cp.position.x < RIGHT_SIDE_M)
+        matches!(self.origin, Origin::Cross { side } if wrong_way && side.sign() * cp.position.x < RIGHT_SIDE_M)
     }
 
     /// Whether a partner that has a signal or a sign on the crossing road, and goes straight on, is beside the lanes that lead there.
@@ -109,7 +108,7 @@ impl Told {
         let straight = self.cp.turning == Turning::No && self.cp.state != ContactState::Reversing && own_way;
         let lanes_m = ground.cross_lanes as f64 * LANE_M;
         let told = straight && self.cp.control.is_some() && ground.junction;
-        matches!(self.origin, Origin::Cross { side } if told && !(0.0..=lanes_m).contains(&(-sign(side) * cp.position.x)))
+        matches!(self.origin, Origin::Cross { side } if told && !(0.0..=lanes_m).contains(&(-side.sign() * cp.position.x)))
     }
 
     /// Whether the partner drives straight on behind an ego that leaves its lane.

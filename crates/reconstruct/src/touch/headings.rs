@@ -15,13 +15,6 @@ const BESIDE_DEG: f64 = 22.0;
 /// How far somebody has turned whose turn is over. [deg]
 const OVER_DEG: [f64; 5] = [90.0, 80.0, 72.0, 100.0, 60.0];
 
-pub(super) const fn sign(side: LeftRight) -> f64 {
-    match side {
-        LeftRight::Left => 1.0,
-        LeftRight::Right => -1.0,
-    }
-}
-
 /// Off the line of who keeps to it. [deg]
 const ASIDE_DEG: [f64; 9] = [0.0, 4.0, -4.0, 8.0, -8.0, 14.0, -14.0, 22.0, -22.0];
 
@@ -52,7 +45,7 @@ pub(super) fn headings(told: &Told, sv_heading: f64, behind: f64) -> Vec<Heading
         list.push((sv_heading, sv_heading + math::FRAC_PI_2));
     }
     // It hangs a little aslant: the told corner comes to it first. What bars the way does so where the ego has turned, too.
-    list.extend(told.meets_chain().map(|side| (sv_heading, sv_heading + sign(side) * rad(HANGS_DEG))));
+    list.extend(told.meets_chain().map(|side| (sv_heading, sv_heading + side.sign() * rad(HANGS_DEG))));
     list.extend(told.bars_way().then_some((sv_heading, sv_heading)));
     if told.backs_from_behind() {
         list.extend(REAR_TO_REAR_DEG.map(rad).map(|heading| (heading, heading)));
@@ -124,7 +117,7 @@ fn slanted(slant: Slant) -> Vec<Headings> {
     match slant {
         Slant::Stood { side, oncoming } => {
             let came = if oncoming { 180.0 } else { 0.0 };
-            let signs = side.map_or(vec![1.0, -1.0], |side| vec![sign(side)]);
+            let signs = side.map_or(vec![1.0, -1.0], |side| vec![side.sign()]);
             let offs = signs.iter().flat_map(|sign| [60.0, 90.0, 45.0, 30.0].map(|off| rad(came + sign * off)));
             offs.map(|heading| (heading, heading)).collect()
         }
@@ -142,8 +135,8 @@ fn along(told: &Told, sv_heading: f64, behind: Option<f64>) -> Vec<f64> {
     }
     // Who touches the outer side of who turns ahead of it goes straight on.
     let outer = match told.sv.turning {
-        Turning::Left => Some(-1.0),
-        Turning::Right => Some(1.0),
+        Turning::Left => Some(LeftRight::Right),
+        Turning::Right => Some(LeftRight::Left),
         Turning::No | Turning::Round => None,
     };
     let goes_on = told.passes_from_behind()
@@ -159,7 +152,7 @@ fn along(told: &Told, sv_heading: f64, behind: Option<f64>) -> Vec<f64> {
 /// Of who comes from the road that crosses the ego's: from the left it moves to the right; who reverses faces back.
 fn crossing(told: &Told, side: LeftRight) -> Vec<Headings> {
     let reverses = told.cp.state == ContactState::Reversing;
-    let came = -sign(side) * math::FRAC_PI_2 + if reverses { math::PI } else { 0.0 };
+    let came = -side.sign() * math::FRAC_PI_2 + if reverses { math::PI } else { 0.0 };
     let turns = matches!(told.cp.turning, Turning::Left | Turning::Right);
     let mut list = Vec::new();
     if turns && (told.cp.turns_wide || told.sv.state.stands()) {
@@ -176,7 +169,7 @@ fn crossing(told: &Told, side: LeftRight) -> Vec<Headings> {
 
 /// Of who walks over the road that the ego turns into, from the told side of that.
 fn over_walk(turn: LeftRight, side: LeftRight) -> [Headings; 3] {
-    let came = (sign(turn) - sign(side)) * math::FRAC_PI_2;
+    let came = (turn.sign() - side.sign()) * math::FRAC_PI_2;
     [0.0, 10.0, -10.0].map(|off| (came, came + rad(off)))
 }
 
@@ -184,7 +177,7 @@ fn over_walk(turn: LeftRight, side: LeftRight) -> [Headings; 3] {
 fn from(told: &Told, side: Option<LeftRight>) -> Vec<f64> {
     let left = |zone: &ContactZone| matches!(zone, ContactZone::Left | ContactZone::FrontLeft | ContactZone::RearLeft);
     match side {
-        Some(side) => vec![sign(side)],
+        Some(side) => vec![side.sign()],
         None if told.sv.zones.iter().any(left) => vec![1.0, -1.0],
         None => vec![-1.0, 1.0],
     }

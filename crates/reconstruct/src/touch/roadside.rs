@@ -32,7 +32,7 @@ const FARTHEST_M: f64 = 5.0;
 /// Ways in which the ego comes to the edge of its road and touches what stands there.
 pub(super) fn stagings(told: &Told, ground: &Ground, side: LeftRight) -> Vec<Staging> {
     // Seen from the ego's line to the right, and from what stands there to the flank that is nearer.
-    let right = if side == LeftRight::Right { 1.0 } else { -1.0 };
+    let right = -side.sign();
     let (corner, within) = ((1.0, -right), (1.0, -0.75 * right));
     let flank_only = !told.sv.zones.is_empty() && !told.sv.zones.iter().any(|zone| zone.is_front());
     let in_passing = told.is_parked_along() && told.sv.movement != Some(Movement::ParkingManeuver);
