@@ -129,7 +129,8 @@ impl Idm {
         }
         self.give_way.count_standing(scene, me);
         let manners = Manners { gap_s: CROSSING_GAP_S };
-        for (crossing, distance) in self.give_way.stop_lines(scene, me, crossings, parameters.desired_speed_mps, manners)
+        for (crossing, distance) in
+            self.give_way.stop_lines(scene, me, crossings, parameters.desired_speed_mps, manners)
         {
             // The line is for the bumper already; the usual room in front of it is not wanted twice.
             let waits = parameters.acceleration(seen.speed, Some((distance + 0.5 * parameters.minimum_gap_m, 0.0)));
@@ -147,9 +148,7 @@ impl Idm {
 fn lead(scene: &Scene<'_>, me: usize, crossing: &Crossing) -> Option<(f64, f64)> {
     let at = |actor: usize| Traveller { s_m: scene.path_s(actor), speed_mps: scene.actors[actor].speed };
     let other = at(crossing.other);
-    let gap_m = crossing.lead(at(me), other)?
-        - scene.actors[me].half_length
-        - scene.actors[crossing.other].half_length;
+    let gap_m = crossing.lead(at(me), other)? - scene.actors[me].half_length - scene.actors[crossing.other].half_length;
     (gap_m > 0.0).then_some((gap_m, other.speed_mps))
 }
 

@@ -8,8 +8,8 @@ use clap::Args;
 use recrash_model::account::{Account, CrashType, Source, told};
 use recrash_model::incident::Incident;
 use recrash_pipeline::{
-    Accounts, Options, Output as File, PipelineError, TableFormat, read_accounts, record_outputs,
-    reported_columns, told_facts, write_accounts,
+    Accounts, Options, Output as File, PipelineError, TableFormat, read_accounts, record_outputs, reported_columns,
+    told_facts, write_accounts,
 };
 use serde_json::Value;
 use std::path::PathBuf;

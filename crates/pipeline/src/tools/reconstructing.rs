@@ -66,7 +66,8 @@ pub fn reconstruction_table(accounts: &[Account], retold: &[Retold]) -> RecordTa
         let made = each.result.as_ref().ok()?;
         Some(made.verdict.checks.iter().filter(|check| counts(check.result)).count())
     };
-    let number = |of: fn(&Impact) -> f64| Column::Number(impacts.iter().map(|impact| impact.as_ref().map(of)).collect());
+    let number =
+        |of: fn(&Impact) -> f64| Column::Number(impacts.iter().map(|impact| impact.as_ref().map(of)).collect());
     let columns = vec![
         ("incident", text(&|each| Some(account(each).incident.clone()))),
         ("report", text(&|each| Some(account(each).report.report_id.clone()))),
