@@ -5,7 +5,7 @@ use crate::world::Own;
 use recrash_model::hash::Fnv;
 use recrash_model::incident::{Incident, IncidentReport, Telling};
 use recrash_model::record::{CrashRecord, Redaction};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Narratives with one of [`REFERENCES`] in them that are longer than this tell a story besides. [byte]
 const LONGEST_REFERENCE_BYTES: usize = 420;
@@ -95,15 +95,14 @@ impl<'a> Look<'a> {
 /// Ids of incidents, each with the positions of its records.
 fn groups(reports: &[Look]) -> Vec<(String, Vec<usize>)> {
     let mut sets = Sets::new(reports.len());
-    let mut by_report: BTreeMap<&str, usize> = BTreeMap::new();
+    let mut by_report: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
     let mut by_incident: BTreeMap<&str, usize> = BTreeMap::new();
     for (number, report) in reports.iter().enumerate() {
         let record = report.record;
-        match by_report.get(record.id.report_id.as_str()) {
+        let of_id = by_report.entry(record.id.report_id.as_str()).or_default();
+        match of_id.iter().find(|&&first| !is_of_another(reports[first].record, record)) {
             Some(&first) => sets.join(first, number),
-            None => {
-                by_report.insert(&record.id.report_id, number);
-            }
+            None => of_id.push(number),
         }
         if let Some(id) = record.incident_id.as_deref() {
             match by_incident.get(id) {
@@ -126,7 +125,7 @@ fn groups(reports: &[Look]) -> Vec<(String, Vec<usize>)> {
         if !(passed_on || refers) {
             continue;
         }
-        if let Some(&named) = report.names.iter().find_map(|name| by_report.get(name.as_str())) {
+        if let Some(&named) = report.names.iter().find_map(|name| by_report.get(name.as_str())?.first()) {
             sets.join(number, named);
         }
     }
@@ -134,7 +133,33 @@ fn groups(reports: &[Look]) -> Vec<(String, Vec<usize>)> {
     for number in 0..reports.len() {
         groups.entry(sets.root(number)).or_default().push(number);
     }
-    groups.into_values().flat_map(|group| crashes(reports, group)).collect()
+    let mut all: Vec<(String, Vec<usize>)> = groups.into_values().flat_map(|group| crashes(reports, group)).collect();
+    all.sort_by(|one, other| one.0.cmp(&other.0));
+    tell_apart(&mut all);
+    all
+}
+
+/// Whether two rows of one report id are no versions of one report: another company reports another day. Whoever made the file gave
+/// several reports one id.
+fn is_of_another(one: &CrashRecord, other: &CrashRecord) -> bool {
+    one.entity != other.entity && one.when != other.when
+}
+
+/// Gives incidents that share an id ids of their own.
+fn tell_apart(all: &mut [(String, Vec<usize>)]) {
+    let mut taken: BTreeSet<String> = all.iter().map(|(id, _)| id.clone()).collect();
+    let mut before: Option<String> = None;
+    for (id, _) in all {
+        if before.as_ref() != Some(&*id) {
+            before = Some(id.clone());
+            continue;
+        }
+        let free = (2..).map(|number| format!("{id}#{number}")).find(|id| !taken.contains(id));
+        if let Some(free) = free {
+            taken.insert(free.clone());
+            *id = free;
+        }
+    }
 }
 
 /// Bytes outside of brackets.

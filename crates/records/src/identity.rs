@@ -1,7 +1,7 @@
 //! Which rows tell of the same thing: versions of one report, and reports of one incident.
 
 use crate::row::Draft;
-use recrash_model::record::{RecordRef, Redaction};
+use recrash_model::record::{CrashRecord, RecordRef, Redaction};
 use recrash_model::{Diagnostic, Location, Severity};
 use std::collections::BTreeMap;
 
@@ -59,6 +59,40 @@ pub fn merge(drafts: &mut [Draft]) -> (Vec<bool>, Vec<Diagnostic>) {
         reports.into_iter().filter(|&i| Some(i) != best).for_each(|i| merged[i] = true);
     }
     (merged, diagnostics)
+}
+
+/// What there is to say about rows that share report id and version and differ: each report is there once in a published file.
+pub fn differing(drafts: &[Draft]) -> Option<Diagnostic> {
+    let mut of_id: BTreeMap<&RecordRef, Vec<&CrashRecord>> = BTreeMap::new();
+    drafts.iter().for_each(|draft| of_id.entry(&draft.record.id).or_default().push(&draft.record));
+    let differ = |records: &[&CrashRecord]| records[1..].iter().any(|record| !is_same(records[0], record));
+    let groups: Vec<(&RecordRef, Vec<&CrashRecord>)> =
+        of_id.into_iter().filter(|(_, records)| differ(records)).collect();
+    let (id, first) = groups.first()?;
+    let count: usize = groups.iter().map(|(_, records)| records.len()).sum();
+    let rows: Vec<String> = first
+        .iter()
+        .take(ROWS_SHOWN)
+        .map(|record| format!("row {} of {}", record.provenance.row, record.provenance.file))
+        .collect();
+    let more = if first.len() > rows.len() { format!(" and {} more", first.len() - rows.len()) } else { String::new() };
+    let message = format!(
+        "{count} rows share report id and version with another one and differ; the first: {id} in {}{more}",
+        rows.join(", ")
+    );
+    let location = Location::at_row(first[0].provenance.file.clone(), first[0].provenance.row);
+    let remark = Diagnostic::new(Severity::Warning, "records.same-id", location, message);
+    Some(remark.with_hint(
+        "where they are different reports, give each an id of its own: rows of one id are versions of one report",
+    ))
+}
+
+/// Rows that are named.
+const ROWS_SHOWN: usize = 3;
+
+/// Whether two rows say the same, wherever they stand.
+fn is_same(one: &CrashRecord, other: &CrashRecord) -> bool {
+    *one == CrashRecord { provenance: one.provenance.clone(), ..other.clone() }
 }
 
 /// Drafts with the same key, in the order of keys, each group in file order.

@@ -120,6 +120,7 @@ pub fn ingest_sources(
     let mut diagnostics = Vec::new();
     let Gathered { sources, mut drafts, file_of_draft, mut rejects } = gather(files, options, &mut diagnostics)?;
     let rows = drafts.len() + rejects.len();
+    diagnostics.extend(identity::differing(&drafts));
     let (fates, funnel) = fates(&mut drafts, rejects.len(), profile, options.filter, &mut diagnostics);
 
     for ((draft, fate), number) in drafts.iter().zip(&fates).zip(file_of_draft) {

@@ -177,6 +177,17 @@ fn new_records_say_what_they_bring_and_leave_the_rest() {
     let (code, _, remarks) = run();
     assert_eq!(code, 0, "{remarks}");
     assert!(remarks.contains("readable incidents are new: "), "{remarks}");
+    // What was reconstructed in the first run is not reconstructed again.
+    let line = remarks.lines().find(|line| line.trim_start().starts_with("reconstruct ")).unwrap();
+    let numbers: Vec<usize> =
+        line.split(|c: char| !c.is_ascii_digit()).filter_map(|number| number.parse().ok()).collect();
+    assert!(line.contains("there already") && numbers[2] * 3 > numbers[0], "{line}");
+    let kept = std::fs::read(place.path("suite/1-accounts.json")).unwrap();
+    std::fs::remove_file(place.path("suite/1-accounts.json")).unwrap();
+    std::fs::remove_file(place.path("suite/1-accounts.outcomes.jsonl")).unwrap();
+    let (code, _, again) = run();
+    assert_eq!(code, 0, "{again}");
+    assert!(std::fs::read(place.path("suite/1-accounts.json")).unwrap() == kept, "all of them made anew are the same");
     assert!(remarks.contains("never seen before") || remarks.contains("was seen before"), "{remarks}");
     // One row more makes its own case alone.
     let units = || std::fs::read_to_string(place.path("suite/units.jsonl")).unwrap().lines().count();

@@ -57,6 +57,27 @@ fn the_counts_are_shown_to_add_up() {
 }
 
 #[test]
+fn rows_that_share_id_and_version_and_differ_are_told() {
+    let place = Place::new();
+    let mut table = csv::Reader::from_reader(SAMPLE_CSV.as_bytes());
+    let mut file = csv::Writer::from_path(place.path("one-id.csv")).unwrap();
+    file.write_record(table.headers().unwrap()).unwrap();
+    for row in table.records().map(Result::unwrap) {
+        let same = ["90999-1", "1"].into_iter().chain(row.iter().skip(2));
+        file.write_record(same).unwrap();
+    }
+    file.flush().unwrap();
+    for profile in ["paper", "open"] {
+        let (code, _, remarks) = place.run(&["records", "one-id.csv", "--profile", profile]);
+        assert_eq!(code, 0, "{remarks}");
+        let told = "451 rows share report id and version with another one and differ; the first: 90999-1/1 in row 1 of one-id.csv";
+        assert!(remarks.contains(told) && remarks.contains("records.same-id"), "{remarks}");
+    }
+    let (_, _, remarks) = place.run(&["records"]);
+    assert!(!remarks.contains("records.same-id"), "{remarks}");
+}
+
+#[test]
 fn tables_hold_the_usable_records_or_all() {
     let place = Place::new();
     let usable = place.records(&["--csv", "usable.csv"])["usable"].as_u64().unwrap();

@@ -12,6 +12,9 @@ use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
+/// This program: what other code made is made again.
+pub(crate) const CODE: &str = concat!(env!("CARGO_PKG_VERSION"), " ", env!("RECRASH_CODE"));
+
 /// Greatest size of a file of a suite that is read back. [bytes]
 const MAX_SUITE_FILE: u64 = 1 << 30;
 

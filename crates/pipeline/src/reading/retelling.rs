@@ -1,19 +1,19 @@
 //! Accounts retold: a reconstruction each, and what becomes of every incident of crash files.
 
 use crate::error::PipelineError;
-use crate::files::json::to_compact_json;
-use crate::files::store::sha256;
 use crate::models::cast::Reads;
 use crate::profiles::{DEFAULT_PROFILE, load_profile};
 use crate::progress::{Progress, ProgressEvent};
 use crate::reading::accounts::told_facts;
+pub(crate) use crate::reading::outcomes::what_is_missed;
+use crate::reading::outcomes::{Outcome, Outcomes, key};
 use crate::reading::records;
 use rayon::prelude::*;
 use recrash_model::account::{
     ACCOUNTS_FORMAT, Account, AccountSet, CrashType, FactShare, TypeShare, Untold, UntoldIncident, told,
 };
 use recrash_model::incident::Incident;
-use recrash_model::metrics::{Answer, Check, CheckKind, CheckResult};
+use recrash_model::metrics::{Answer, CheckKind, CheckResult};
 use recrash_model::record::{CrashRecord, FunnelStep, Reading, RecordSet, Redaction, Reject, RejectReason};
 use recrash_model::scenario::ScenarioDraft;
 use recrash_reconstruct::{Reconstruction, reconstruct, told_kinds};
@@ -43,10 +43,6 @@ impl Stagings {
     pub fn take(&self, account: &Account) -> Option<Staged> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).remove(&key(account))
     }
-}
-
-fn key(account: &Account) -> String {
-    sha256(&to_compact_json(account))
 }
 
 /// Name of the work in progress bars.
@@ -118,19 +114,26 @@ pub struct Impact {
     pub other_delta_v_mps: f64,
 }
 
+/// An account with what became of it.
+struct Fated {
+    account: Account,
+    outcome: Outcome,
+    /// Its scenario, where it was made in this run and there is one.
+    made: Option<Reconstruction>,
+}
+
+impl Fated {
+    /// Reconstructs an account.
+    fn of(account: Account) -> Self {
+        let result = reconstruct(&account);
+        Self { account, outcome: Outcome::of(&result), made: result.ok() }
+    }
+}
+
 /// Why the crash of an account is not told by its reconstruction; nothing where it is, or where it need not be yet and there is one.
 pub(crate) fn why_untold(account: &Account, is_staged_again: bool) -> Option<String> {
     let retold = Retold { account: 0, result: reconstruct(account) };
     if is_staged_again && retold.result.is_ok() { None } else { retold.reason() }
-}
-
-/// A told fact that is missed, and what is seen in its place.
-pub(crate) fn what_is_missed(missed: &Check) -> String {
-    let what = missed.kind.label();
-    match missed.result {
-        CheckResult::CannotBeShown => format!("{what} is not drawn: {}", missed.observed),
-        _ => format!("{what} is not shown: {}, not {}", missed.observed, missed.expected),
-    }
 }
 
 /// Reconstructs every account, on all threads, in the order given.
@@ -148,35 +151,43 @@ pub fn reconstruct_accounts(accounts: &[Account], progress: &dyn Progress) -> Ve
 
 /// The share of told facts that are shown, by kind, over all accounts.
 pub fn fact_shares(accounts: &[Account], retold: &[Retold]) -> Vec<FactShare> {
-    let told_by: Vec<Vec<CheckKind>> = accounts.par_iter().map(told_kinds).collect();
+    let outcomes: Vec<Outcome> = retold.iter().map(|each| Outcome::of(&each.result)).collect();
+    let each: Vec<_> = retold.iter().zip(&outcomes).map(|(each, outcome)| (&accounts[each.account], outcome)).collect();
+    shares_of_facts(&each)
+}
+
+/// The same of accounts with their outcomes.
+fn shares_of_facts(all: &[(&Account, &Outcome)]) -> Vec<FactShare> {
+    let told_by: Vec<Vec<CheckKind>> = all.par_iter().map(|(account, _)| told_kinds(account)).collect();
     let share = |fact: CheckKind| {
-        let tells = |each: &&Retold| told_by[each.account].contains(&fact);
-        let of = |result: CheckResult| {
-            let holds = |each: &&Retold| {
-                let checks = each.result.as_ref().map_or(&[][..], |made| &made.verdict.checks);
-                checks.iter().any(|check| check.kind == fact && check.result == result)
-            };
-            retold.iter().filter(tells).filter(holds).count()
-        };
+        let tells =
+            || all.iter().zip(&told_by).filter(|(_, told)| told.contains(&fact)).map(|((_, outcome), _)| outcome);
+        let of = |result: CheckResult| tells().filter(|outcome| outcome.checks.contains(&(fact, result))).count();
         let (shown, not_drawn) = (of(CheckResult::Shown), of(CheckResult::CannotBeShown));
-        FactShare { fact, told: retold.iter().filter(tells).count(), shown, not_drawn }
+        FactShare { fact, told: tells().count(), shown, not_drawn }
     };
     CheckKind::OF_ACCOUNTS.into_iter().map(share).collect()
 }
 
 /// How much of every type that occurs is told.
 pub fn type_shares(accounts: &[Account], retold: &[Retold]) -> Vec<TypeShare> {
-    let facts: Vec<usize> = accounts.par_iter().map(|account| told_facts(account).len()).collect();
+    let outcomes: Vec<Outcome> = retold.iter().map(|each| Outcome::of(&each.result)).collect();
+    let each: Vec<_> = retold.iter().zip(&outcomes).map(|(each, outcome)| (&accounts[each.account], outcome)).collect();
+    shares_of_types(&each)
+}
+
+/// The same of accounts with their outcomes.
+fn shares_of_types(all: &[(&Account, &Outcome)]) -> Vec<TypeShare> {
+    let facts: Vec<usize> = all.par_iter().map(|(account, _)| told_facts(account).len()).collect();
     let share = |crash_type: Option<CrashType>| {
-        let of: Vec<&Retold> =
-            retold.iter().filter(|each| told(&accounts[each.account].crash_type) == crash_type).collect();
-        let words: usize = of.iter().map(|each| accounts[each.account].words as usize).sum();
-        let facts: usize = of.iter().map(|each| facts[each.account]).sum();
+        let of = || all.iter().zip(&facts).filter(|((account, _), _)| told(&account.crash_type) == crash_type);
+        let words: usize = of().map(|((account, _), _)| account.words as usize).sum();
+        let facts: usize = of().map(|(_, facts)| facts).sum();
         TypeShare {
             crash_type,
-            incidents: of.len(),
-            told: of.iter().filter(|each| each.untold().is_none()).count(),
-            whole: of.iter().filter(|each| each.is_whole()).count(),
+            incidents: of().count(),
+            told: of().filter(|((_, outcome), _)| outcome.untold.is_none()).count(),
+            whole: of().filter(|((_, outcome), _)| outcome.is_whole).count(),
             facts_per_100_words: 100.0 * facts as f64 / words.max(1) as f64,
         }
     };
@@ -200,13 +211,10 @@ pub(crate) struct Unread<'a> {
 }
 
 /// Whether an account lacks what a crash is told by, or says what cannot have been.
-fn is_incomplete(account: &Account, retold: &Retold) -> bool {
+fn is_incomplete(Fated { account, outcome, .. }: &Fated) -> bool {
     let lacks = account.crash_type.is_none() || account.striker.is_none() || account.came_from.is_none();
     lacks
-        || matches!(
-            retold.untold(),
-            Some(Untold::NoAccount | Untold::OthersOnly | Untold::NoContact | Untold::NotShown)
-        )
+        || matches!(outcome.untold, Some(Untold::NoAccount | Untold::OthersOnly | Untold::NoContact | Untold::NotShown))
 }
 
 /// An incident whose crash is staged, and not as it is told.
@@ -247,10 +255,11 @@ pub(crate) fn tell(
     progress: &dyn Progress,
     second: Second,
     stagings: &Stagings,
+    outcomes: Outcomes,
 ) -> Result<(RecordSet, AccountSet), PipelineError> {
     let incidents = records::incidents(&set);
     let read: Vec<&Incident> = incidents.iter().filter(|incident| is_kept(incident, filter)).collect();
-    let mut telling = Telling::of(&read, progress);
+    let mut telling = Telling::of(&read, progress, outcomes, second.stage_again.is_some())?;
     telling.look_again(&read, second)?;
     telling.keep(stagings);
     let fates = fates(&set, &incidents, filter, &telling);
@@ -264,37 +273,53 @@ fn is_kept(incident: &Incident, filter: Option<&Filter>) -> bool {
     incident.leading().is_some_and(|report| filter.is_none_or(|filter| filter.keeps(&report.record)))
 }
 
-/// The accounts of incidents, and what became of each: one list beside the other.
-struct Telling {
-    accounts: Vec<Account>,
-    retold: Vec<Retold>,
-}
+/// The accounts of incidents, and what became of each.
+struct Telling(Vec<Fated>);
 
 impl Telling {
-    /// What the built-in reader makes of these incidents.
-    fn of(read: &[&Incident], progress: &dyn Progress) -> Self {
+    /// What the built-in reader makes of these incidents. What became of an account in an earlier run is taken from there, but for scenes
+    /// that somebody else is to change.
+    fn of(
+        read: &[&Incident],
+        progress: &dyn Progress,
+        outcomes: Outcomes,
+        is_staged_again: bool,
+    ) -> Result<Self, PipelineError> {
         let accounts: Vec<Account> = read.par_iter().filter_map(|incident| recrash_reader::account(incident)).collect();
-        let retold = reconstruct_accounts(&accounts, progress);
-        Self { accounts, retold }
-    }
-
-    /// Every account with what became of it.
-    fn each(&self) -> impl Iterator<Item = (&Account, &Retold)> {
-        self.accounts.iter().zip(&self.retold)
+        progress.event(ProgressEvent::Started { stage: STAGE, units: accounts.len() });
+        let tell = |account: &Account| {
+            let is_enough = |outcome: &Outcome| !(is_staged_again && outcome.untold == Some(Untold::NotShown));
+            let known = outcomes.get(account).filter(is_enough);
+            let skipped = known.is_some();
+            let fated = match known {
+                Some(outcome) => Fated { account: account.clone(), outcome, made: None },
+                None => {
+                    let fated = Fated::of(account.clone());
+                    outcomes.keep(account, &fated.outcome);
+                    fated
+                }
+            };
+            progress.event(ProgressEvent::Advanced { stage: STAGE, unit: &account.incident, skipped });
+            fated
+        };
+        let all: Vec<Fated> = accounts.par_iter().map(tell).collect();
+        outcomes.finish(&accounts)?;
+        progress.event(ProgressEvent::Finished { stage: STAGE });
+        Ok(Self(all))
     }
 
     /// Has somebody else read what is not read whole, or all, and stage what is not shown as told. An account of theirs is taken where the
     /// crash is told by it, or staged then; else the account stays as it was.
     fn look_again(&mut self, read: &[&Incident], second: Second) -> Result<(), PipelineError> {
         let of_id: BTreeMap<&str, &Incident> = read.iter().map(|&incident| (incident.id.as_str(), incident)).collect();
-        let is_asked = |at: &usize| second.reads == Reads::All || is_incomplete(&self.accounts[*at], &self.retold[*at]);
-        let positions: Vec<usize> = (0..self.accounts.len()).filter(is_asked).collect();
+        let is_asked = |at: &usize| second.reads == Reads::All || is_incomplete(&self.0[*at]);
+        let positions: Vec<usize> = (0..self.0.len()).filter(is_asked).collect();
         let unread = |&at: &usize| {
-            let account = &self.accounts[at];
+            let account = &self.0[at].account;
             Unread { incident: of_id[account.incident.as_str()], account }
         };
         let asked: Vec<Unread> = positions.iter().map(unread).collect();
-        let again = (second.read_again)(&asked, self.accounts.len())?;
+        let again = (second.read_again)(&asked, self.0.len())?;
         let again = positions.into_iter().zip(again).filter_map(|(at, account)| Some((at, account?)));
         let before = self.take(again.collect(), second.stage_again.is_some());
         second.stage_again.map_or(Ok(()), |stage_again| self.stage_again(&of_id, before, stage_again))
@@ -302,15 +327,14 @@ impl Telling {
 
     /// Takes these accounts where the crash is told by them, and where there is a scene of it, if it is to be staged by somebody else. Gives
     /// what stood in the place of the latter.
-    fn take(&mut self, again: Vec<(usize, Account)>, is_staged_again: bool) -> BTreeMap<usize, (Account, Retold)> {
+    fn take(&mut self, again: Vec<(usize, Account)>, is_staged_again: bool) -> BTreeMap<usize, Fated> {
         let mut before = BTreeMap::new();
         for (at, account) in again {
-            let other = Retold { account: at, result: reconstruct(&account) };
-            let is_told = other.untold().is_none();
-            if is_told || is_staged_again && other.result.is_ok() {
-                let account = std::mem::replace(&mut self.accounts[at], account);
-                let retold = std::mem::replace(&mut self.retold[at], other);
-                before.extend((!is_told).then_some((at, (account, retold))));
+            let other = Fated::of(account);
+            let is_told = other.outcome.untold.is_none();
+            if is_told || is_staged_again && other.made.is_some() {
+                let old = std::mem::replace(&mut self.0[at], other);
+                before.extend((!is_told).then_some((at, old)));
             }
         }
         before
@@ -320,20 +344,21 @@ impl Telling {
     fn stage_again(
         &mut self,
         incidents: &BTreeMap<&str, &Incident>,
-        mut before: BTreeMap<usize, (Account, Retold)>,
+        mut before: BTreeMap<usize, Fated>,
         stage_again: &mut StageAgain,
     ) -> Result<(), PipelineError> {
-        let unstaged = self.each().filter_map(|(account, retold)| {
-            retold.untold().filter(|why| *why == Untold::NotShown)?;
-            let made = retold.result.as_ref().ok()?;
-            Some((retold.account, Unstaged { incident: incidents[account.incident.as_str()], account, made }))
+        let unstaged = self.0.iter().enumerate().filter_map(|(at, Fated { account, outcome, made })| {
+            let made = made.as_ref().filter(|_| outcome.untold == Some(Untold::NotShown))?;
+            Some((at, Unstaged { incident: incidents[account.incident.as_str()], account, made }))
         });
         let (positions, unstaged): (Vec<usize>, Vec<Unstaged>) = unstaged.unzip();
         for (at, made) in positions.into_iter().zip(stage_again(&unstaged)?) {
             if let Some(made) = made {
-                self.retold[at].result = Ok(made);
+                let made = Ok(made);
+                self.0[at].outcome = Outcome::of(&made);
+                self.0[at].made = made.ok();
             } else if let Some(old) = before.remove(&at) {
-                (self.accounts[at], self.retold[at]) = old;
+                self.0[at] = old;
             }
         }
         Ok(())
@@ -341,10 +366,9 @@ impl Telling {
 
     /// Hands on the scenarios of what the rules tell.
     fn keep(&self, stagings: &Stagings) {
-        for (account, retold) in self.each() {
-            if let (Ok(made), None) = (&retold.result, retold.untold())
-                && made.draft.source.author.is_rules()
-            {
+        for Fated { account, outcome, made } in &self.0 {
+            let told = made.as_ref().filter(|_| outcome.untold.is_none());
+            if let Some(made) = told.filter(|made| made.draft.source.author.is_rules()) {
                 stagings.keep(account, made);
             }
         }
@@ -352,19 +376,18 @@ impl Telling {
 
     /// The accounts for the stages that follow, told and untold, of so many incidents.
     fn into_set(self, incidents: usize) -> AccountSet {
-        let untold = |(account, retold): (&Account, &Retold)| {
-            Some(UntoldIncident {
-                account: account.clone(),
-                why: retold.untold()?,
-                reason: retold.reason().unwrap_or_default(),
-            })
-        };
-        let untold = self.each().filter_map(untold).collect();
-        let (types, facts) = (type_shares(&self.accounts, &self.retold), fact_shares(&self.accounts, &self.retold));
-        let readable = self.accounts.len();
-        let mut told = self.accounts;
-        let mut is_told = self.retold.iter().map(|retold| retold.untold().is_none());
-        told.retain(|_| is_told.next().unwrap_or(false));
+        let each: Vec<(&Account, &Outcome)> = self.0.iter().map(|fated| (&fated.account, &fated.outcome)).collect();
+        let (types, facts) = (shares_of_types(&each), shares_of_facts(&each));
+        let readable = self.0.len();
+        let (mut told, mut untold) = (Vec::new(), Vec::new());
+        for Fated { account, outcome, .. } in self.0 {
+            match outcome.untold {
+                None => told.push(account),
+                Some(why) => {
+                    untold.push(UntoldIncident { account, why, reason: outcome.reason.unwrap_or_default() });
+                }
+            }
+        }
         AccountSet { format: ACCOUNTS_FORMAT.to_owned(), incidents, readable, types, facts, told, untold }
     }
 }
@@ -376,15 +399,15 @@ type Fate = Result<Reading, RejectReason>;
 fn fates(set: &RecordSet, incidents: &[Incident], filter: Option<&Filter>, telling: &Telling) -> Vec<Fate> {
     let leading: BTreeMap<Place, &Incident> =
         incidents.iter().filter_map(|incident| Some((place(&incident.leading()?.record), incident))).collect();
-    let of_incident: BTreeMap<&str, (&Account, &Retold)> =
-        telling.each().map(|(account, retold)| (account.incident.as_str(), (account, retold))).collect();
+    let of_incident: BTreeMap<&str, &Fated> =
+        telling.0.iter().map(|fated| (fated.account.incident.as_str(), fated)).collect();
     let fate = |record: &CrashRecord| -> Fate {
         let incident = leading.get(&place(record)).ok_or(RejectReason::Merged)?;
         if !is_kept(incident, filter) {
             return Err(RejectReason::FilteredOut);
         }
-        let (account, retold) = of_incident.get(incident.id.as_str()).ok_or_else(|| why_no_account(record))?;
-        reading(incident, account, retold).map_err(RejectReason::Untold)
+        let fated = of_incident.get(incident.id.as_str()).ok_or_else(|| why_no_account(record))?;
+        reading(incident, fated).map_err(RejectReason::Untold)
     };
     set.usable.iter().map(|&at| fate(&set.records[at])).collect()
 }
@@ -399,8 +422,8 @@ fn why_no_account(record: &CrashRecord) -> RejectReason {
 }
 
 /// What is read of an incident whose crash is told; else why it is not.
-fn reading(incident: &Incident, account: &Account, retold: &Retold) -> Result<Reading, Untold> {
-    match (retold.untold(), told(&account.crash_type)) {
+fn reading(incident: &Incident, Fated { account, outcome, .. }: &Fated) -> Result<Reading, Untold> {
+    match (outcome.untold, told(&account.crash_type)) {
         (None, Some(crash_type)) => Ok(Reading {
             incident: incident.id.clone(),
             reports: account.reports.len(),

@@ -87,7 +87,10 @@ impl Cases {
     pub fn account(&self, cluster: &Cluster) -> Option<&Account> {
         let told = &self.accounts.as_ref()?.told;
         let mut accounts = self.told.get(&cluster.pick.report_id)?.iter().map(|&at| &told[at]);
-        accounts.find(|account| account.report == cluster.pick).filter(|_| !cluster.invented)
+        // Two reports may share an id; their incidents do not.
+        let reading = self.records.records[cluster.pick_index].reading.as_ref();
+        let is_its = |account: &&Account| reading.is_none_or(|reading| reading.incident == account.incident);
+        accounts.find(|account| account.report == cluster.pick && is_its(account)).filter(|_| !cluster.invented)
     }
 
     /// Where the records of a case stand: the pick first, then the other reports of its incident; none of a template without records.

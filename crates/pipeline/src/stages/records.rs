@@ -6,6 +6,7 @@ use super::{StageReport, StageWork, cases, own, player};
 use crate::error::PipelineError;
 use crate::files::json::{to_compact_json, to_json};
 use crate::models::cast::{AgentLog, Reads};
+use crate::reading::outcomes::Outcomes;
 use crate::reading::records::RecordInput;
 use crate::reading::retelling::{Second, StageAgain, Unread, Unstaged, tell};
 use crate::suite::Suite;
@@ -52,7 +53,8 @@ pub(super) fn run(work: &StageWork) -> Result<StageReport, PipelineError> {
         };
         let stage_again: Option<&mut StageAgain> = suite.options().stager().is_some().then_some(&mut stage);
         let second = Second { reads: suite.options().cast.reads, read_again: &mut again, stage_again };
-        let (told, accounts) = tell(value, filter.as_ref(), work.progress, second, suite.stagings())?;
+        let outcomes = Outcomes::open(suite.store())?;
+        let (told, accounts) = tell(value, filter.as_ref(), work.progress, second, suite.stagings(), outcomes)?;
         take_back(&mut logs, &accounts);
         Ok(vec![
             (names::ACCOUNT_READERS.into(), to_json(&logs)),

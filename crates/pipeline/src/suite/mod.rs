@@ -11,7 +11,7 @@ use crate::models::cast::RULES;
 use crate::simulators::external::{self, EgoCommand, FILES_UNKNOWN, Patience, default_python};
 
 use crate::files::json::to_json;
-use crate::files::store::{Store, TEMPORARY_PREFIX, WriteFile, sha256, write_suite_file};
+use crate::files::store::{CODE, Store, TEMPORARY_PREFIX, WriteFile, sha256, write_suite_file};
 use crate::models::{AnswerMode, ModelAccess, Models};
 use crate::options::{Options, RecordSource};
 use crate::reading::records;
@@ -745,7 +745,7 @@ fn is_empty(folder: &Path) -> Result<bool, PipelineError> {
 
 /// One hash of several inputs and of the code of this program.
 fn hash_all(inputs: &[String]) -> String {
-    let mut all = concat!(env!("CARGO_PKG_VERSION"), " ", env!("RECRASH_CODE")).as_bytes().to_vec();
+    let mut all = CODE.as_bytes().to_vec();
     for input in inputs {
         all.extend((input.len() as u64).to_le_bytes());
         all.extend_from_slice(input.as_bytes());

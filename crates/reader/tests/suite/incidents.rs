@@ -2,7 +2,7 @@
 
 use crate::common::record;
 use recrash_model::incident::{Incident, Telling};
-use recrash_model::record::{CrashRecord, Redaction};
+use recrash_model::record::{CrashRecord, Redaction, YearMonth};
 use recrash_reader::{account, incidents};
 
 const STORY: &str = "The AV was stopped at a red light on Elm Street when a sedan approached the AV from behind and \
@@ -32,6 +32,20 @@ fn every_row_is_in_exactly_one_incident() {
     let ids: Vec<&str> = all.iter().map(|incident| incident.id.as_str()).collect();
     assert_eq!(ids, ["100-2", "100-3", "aa"]);
     assert_eq!(counts, [2, 1, 2]);
+}
+
+#[test]
+fn reports_of_other_companies_on_other_days_are_no_versions_of_one_though_they_share_an_id() {
+    let of = |entity: &str, month: u8| {
+        let mut row = record("100-2", 1, STORY);
+        row.entity = entity.to_owned();
+        row.when = Some(YearMonth { year: 2025, month });
+        row
+    };
+    let rows = [of("One", 1), of("Two", 2), of("One", 3), of("Three", 4), of("Two", 2)];
+    let all = incidents(&rows);
+    let told: Vec<(&str, usize)> = all.iter().map(|incident| (incident.id.as_str(), incident.reports.len())).collect();
+    assert_eq!(told, [("100-2", 2), ("100-2#2", 2), ("100-2#3", 1)]);
 }
 
 #[test]
