@@ -147,7 +147,7 @@ pub(crate) struct Told {
 impl Told {
     /// Whether the partner does more than stand there, or swing.
     pub(crate) fn partner_acts(&self) -> bool {
-        !(self.thing.is_some() && self.cp.state.stands()) && !self.gate_swings
+        !(self.gate_swings || self.thing.is_some() && self.cp.state.stands())
     }
 
     /// Whether the ego is told to have come into the junction.
