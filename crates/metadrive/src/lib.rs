@@ -1,4 +1,4 @@
-//! MetaDrive 0.4.3 as a second simulator, for the same checked scenarios and with the same result, a [`Rollout`].
+//! MetaDrive 0.4.3 as a second simulator, for the same checked scenarios and with the same result, a [`Rollout`](recrash_model::rollout::Rollout).
 //!
 //! MetaDrive lives in Python. [`Metadrive`] keeps long-lived worker processes that speak JSON lines; the script they run
 //! is part of this crate. A worker that hangs, dies or prints rubbish is replaced, its scenario tried once more and then
