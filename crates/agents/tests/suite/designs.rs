@@ -197,7 +197,7 @@ fn what_cannot_be_staged_is_an_error_and_so_is_no_record() {
     let record = support::record(support::template(RoadType::Intersection, Movement::Backing, Movement::Straight), "x");
     let error = Rules.paraphrase(&support::brief("01-test", &[&record], &profile, 7)).unwrap_err();
     assert!(matches!(error, AgentError::TemplateUnknown { .. }), "{error}");
-    assert!(error.to_string().starts_with("01-test: "), "{error}");
+    assert!(error.to_string().contains("Intersection, SV backing"), "{error}");
     let template = support::template(RoadType::Intersection, Movement::Straight, Movement::Straight);
     let records = [&record];
     let empty = recrash_agents::Brief { records: &[], template, ..support::brief("02-test", &records, &profile, 7) };

@@ -1,6 +1,6 @@
 //! What the command says when it is given something it cannot use: what, where and how to mend, and the exit code.
 
-use crate::common::{few, recrash};
+use crate::common::{MISSED, few, recrash};
 use recrash_records::SAMPLE_CSV;
 use std::path::{Path, PathBuf};
 
@@ -10,8 +10,6 @@ const USAGE: i32 = 2;
 const BAD_INPUT: i32 = 3;
 /// Files that cannot be read or written.
 const FILES: i32 = 1;
-/// A run that is not true to its record.
-const MISSED: i32 = 5;
 
 struct Case {
     folder: tempfile::TempDir,
@@ -263,7 +261,7 @@ fn a_scenario_nobody_can_design_is_named_and_the_others_are_run() {
     let out = out.to_str().unwrap();
     let run = || {
         let (code, shown) = case.run(&["run", "--quiet", "--budget", "30", "--profile", &profile, "--out", out]);
-        assert_eq!(code, 0, "{shown}");
+        assert_eq!(code, MISSED, "{shown}");
         std::fs::read_to_string(case.out().join("summary.json")).unwrap()
     };
     let first = run();

@@ -1,13 +1,10 @@
 //! What a person did in a suite is kept, and what nobody asked for is not replaced.
 
-use crate::common::{FEW, Place, copy, driving_ego};
+use crate::common::{FEW, MISSED, Place, copy, driving_ego};
 use serde_json::Value;
 use std::path::PathBuf;
 
 const THREE: [&str; 8] = ["run", "--quiet", "--records", FEW, "--budget", "3", "--tune-budget", "4"];
-
-/// Work that misses what is asked for.
-const MISSED: i32 = 5;
 
 fn run(place: &Place, words: &[&str]) -> String {
     let (code, out, error) = place.run(words);

@@ -1,6 +1,6 @@
 //! Frozen suites, their results and comparisons, as a test engineer meets them each night.
 
-use crate::common::{FEW, Place, SMALL, TOLD};
+use crate::common::{FEW, MISSED, Place, SMALL, TOLD};
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -331,7 +331,7 @@ fn an_ego_that_does_not_repeat_is_told_and_written_down() {
 
     let run = ["run", "--records", FEW, "--budget", "2", "--tune-budget", "1", "--threads", "1", "--out", "learnt"];
     let (code, shown, errors) = place.run(&[&run[..], &["--ego", "cmd:python3 learning.py"]].concat());
-    assert_eq!(code, 0, "{errors}");
+    assert!([0, MISSED].contains(&code), "{errors}");
     assert!(shown.contains("warning: the ego does not repeat"), "{shown}");
     let summary: Value = serde_json::from_slice(&std::fs::read(place.path("learnt/summary.json")).unwrap()).unwrap();
     assert!(summary["cases"].as_array().unwrap().iter().any(|case| case["unrepeated"] == true), "{summary}");

@@ -12,7 +12,7 @@ fn shares_reasons_and_facts_are_shown_on_a_screen() {
     assert_eq!(code, 0, "{remarks}");
     for words in [
         "Readable incidents whose crash is reconstructed: no stated fact contradicted, nothing that the two did left out",
-        "told, and not drawn yet: lanes for buses",
+        "stated, but not drawn yet: lanes for buses",
         "Front to rear",
         "Why the others are not",
         "facts per 100",

@@ -1,6 +1,6 @@
 //! What a suite's folder may count on: one run at a time, nothing left behind, nothing touched that is not its own.
 
-use crate::common::{Place, SMALL, TOLD, driving_ego, plain_recrash};
+use crate::common::{MISSED, Place, SMALL, TOLD, driving_ego, plain_recrash};
 use std::path::Path;
 
 /// A place with a small suite in `suite/`, and the words that make it again.
@@ -146,14 +146,11 @@ fn nor_does_it_lose_an_ego_that_is_a_module_or_a_file_of_pythons() {
     std::fs::write(place.path("mine.py"), "from my_stack import drive\n").unwrap();
     for ego in ["py:my_stack:drive", "py:mine:drive", "py:mine.py:drive"] {
         let (code, _, error) = place.run(&["run", "--quiet", "--budget", "1", "--tune-budget", "1", "--ego", ego]);
-        assert_eq!(code, 0, "{error}");
+        assert!([0, MISSED].contains(&code), "{error}");
         let results = std::fs::read_to_string(place.path("suite/results.csv")).unwrap();
         assert_eq!(hashes_of_reruns(&place, &results), hashes(&results), "{ego}");
     }
 }
-
-/// Work that misses what is asked for.
-const MISSED: i32 = 5;
 
 #[test]
 fn a_run_that_is_not_true_to_its_record_is_told_by_the_exit_code() {

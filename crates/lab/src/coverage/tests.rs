@@ -187,7 +187,7 @@ fn the_environment_is_told_by_attribute() {
             "weather, rain",
             "weather, fog",
             "posted limit, 26 to 35 mph",
-            "light, not told",
+            "light, not stated",
         ]
     );
 }

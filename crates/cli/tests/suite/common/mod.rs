@@ -8,6 +8,8 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, Once, OnceLock};
 
+/// Exit code of work that misses what is asked for: a scenario that is not true to its record, or that was not run.
+pub const MISSED: i32 = 5;
 /// A crash file with the first rows of the built-in sample, with [`UNREAD`] and [`GROUNDS`]. To stage the whole sample takes ten times as long: what is
 /// not about all of its incidents is tested on these.
 pub const FEW: &str = concat!(env!("CARGO_TARGET_TMPDIR"), "/few.csv");

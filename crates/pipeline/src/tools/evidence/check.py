@@ -7,6 +7,7 @@ import hashlib, json, math, struct, sys
 from pathlib import Path
 
 STEP_S, TOUCH_M, FRICTION, APPROACH_M, Z95 = 0.1, 0.02, 0.5, 0.1, 1.959963984540054
+TOUCH_S, SLACK_M = 0.025, 0.01  # a physics step, and by how much boxes may come to overlap in it without closing
 
 class Box:
     """A rectangle: middle, half sizes, and its axis."""
@@ -84,8 +85,9 @@ def impulse(masses, boxes, speeds, tracks, states):
     apart = (second.x - first.x, second.y - first.y)
     ways = [(d if dot(apart, d) >= 0.0 else (-d[0], -d[1])) for d in (first.axis, first.left, second.axis, second.left)]
     depth = lambda d: first.reach(d) + second.reach(d) - dot(apart, d)
-    closing = [d for d in ways if dot(relative, d) > 1e-6]
-    normal = min(closing, key=lambda d: depth(d) / dot(relative, d)) if closing else min(ways, key=depth)
+    before = lambda d: depth(d) - dot(relative, d) * TOUCH_S
+    young = [d for d in ways if dot(relative, d) > 1e-6 and before(d) <= SLACK_M]
+    normal = min(young, key=lambda d: depth(d) / dot(relative, d)) if young else min(ways, key=before)
     moved = second
     if area_and_middle(shared(first, second))[0] <= TOUCH_M**2:
         p, q, off = nearest_points(first, second)
@@ -131,13 +133,15 @@ class Run:
         least, first = {}, {}
         still = lambda pose: [dict(pose["position"], heading=pose["heading"])] * len(ego["states"])
         things = [dict(thing, role="thing", states=still(thing["pose"])) for thing in rollout["obstacles"]]
+        with_parts = lambda at: [(actors + things)[at]] + [part for part in actors if part.get("part_of") == at]
+        boxes_at = lambda of, k: [Box(track["states"][k], track["length_m"], track["width_m"]) for track in of if k < len(track["states"])]
         for at, actor in enumerate(actors[1:] + things, 1):
             from_s, until_s = actor.get("appears_s", 0.0) - 1e-9, actor.get("gone_s", math.inf) - 1e-9
-            for k, (mine, other) in enumerate(zip(ego["states"], actor["states"])):
-                if not handover_s - 1e-9 <= k * STEP_S <= end + 1e-9:
+            for k in range(min(len(ego["states"]), len(actor["states"]))):
+                if actor["role"] == "part" or not handover_s - 1e-9 <= k * STEP_S <= end + 1e-9:
                     continue
-                moved = (0.0, 0.0) if from_s <= k * STEP_S < until_s else (1e6 - other["x"], 1e6 - other["y"])
-                d = gap(Box(mine, ego["length_m"], ego["width_m"]), Box(other, actor["length_m"], actor["width_m"], moved))
+                there = boxes_at(with_parts(at), k) if from_s <= k * STEP_S < until_s else []
+                d = min((gap(a, b) for a in boxes_at(with_parts(0), k) for b in there), default=1e6)
                 least[at], first[at] = min(d, least.get(at, math.inf)), first.get(at, d)
         bumps = [e for e in events if e["kind"]["event"] == "obstacle_contact" and e["kind"]["actor"] == 0]
         hit = [len(actors) + e["kind"]["obstacle"] for e in bumps if handover_s - 1e-9 <= e["time_s"] <= end + 1e-9]
