@@ -262,7 +262,12 @@ fn an_account_that_somebody_spoiled_stops_its_case_alone_until_it_is_mended() {
 
 #[test]
 fn as_told_is_the_crash_as_reconstructed_and_its_row_says_how_to_run_it_again() {
-    let place = Place::made(&TOLD);
+    let place = Place::new();
+    // With this seed tuning keeps another scenario of one of the twelve.
+    let mut arguments = TOLD;
+    arguments[10] = "2";
+    let (code, _, errors) = place.run(&arguments);
+    assert_eq!(code, 0, "{errors}");
     let hash = |file: &str| json(&place, &format!("suite/{file}"))["judgement"]["state_hash"].clone();
     let table = std::fs::read(place.path("suite/results.csv")).unwrap();
     let mut reader = csv::Reader::from_reader(&table[..]);
