@@ -1,4 +1,4 @@
-//! Reads the reports of one incident into an [`Account`]: typed facts, each with the words or the column it comes from.
+//! Reads the reports of one incident into an [`Account`](recrash_model::account::Account): typed facts, each with the words or the column it comes from.
 //!
 //! A small grammar of the English of crash reports. Tokens make sentences; chunks of a sentence are who is named, verbs,
 //! parts of vehicles, places; verbs make event frames (who, what, to whom, where, negated, how far it came). A world is
