@@ -80,10 +80,11 @@ fn account_sentence(context: &Context, accounts: &AccountSet) -> Markup {
         (thousands(accounts.types.iter().map(|share| share.whole).sum())) " show every stated fact. Stated is what the program read in a report; it cannot notice its own misreadings. "
         @if s.cases < accounts.told.len() { b { (thousands(s.cases)) } " were selected. " } @else { "All of them are here. " }
         (not_shown_here(s))
-        b { (words::clean(&suite.ego, 60)) } " drove " (thousands(first.ran)) " of them from the handover on, and got into the reported situation in " b { (thousands(first.met)) } ". As reconstructed it fails "
-        b { (thousands(first.failures.total())) " of those " (thousands(first.met)) } @if first.failures.total() > 0 { ": " (manners(first.failures)) } ". (What the ego drove has seldom to do with being struck while it stands, and little with being struck from behind.) "
-        @if s.tuned { "After tuning, within what the reports leave open, it fails " b { (thousands(last.failures.total())) " of " (thousands(last.met)) } @if last.failures.total() > 0 { ": " (manners(last.failures)) } "; " (thousands(s.by_tuning)) " of them after tuning alone" } @else { "Tuning within what the reports leave open kept no other scenario" }
-        @if s.parked > 0 { "; in " (thousands(s.parked)) " it was parked, and there is nothing to test" }
+        b { (words::clean(&suite.ego, 60)) } " drove " (thousands(first.ran)) " of them from the handover on"
+        @if s.parked > 0 { " (in " (thousands(s.parked)) " it was parked, and there is nothing to test)" }
+        ", and got into the reported situation in " b { (thousands(first.met)) } ". It fails " b { (thousands(first.failures.total())) " of those " (thousands(first.met)) } " as reconstructed"
+        @if s.tuned { ", and " b { (thousands(last.failures.total())) " of " (thousands(last.met)) } " after tuning within what the reports leave open; " (thousands(s.by_tuning)) " of them after tuning alone" }
+        @else { "; tuning within what the reports leave open kept no other scenario" }
         (beyond_tyres(last))
         ". A failure is a contact, a box gap below " (fixed(suite.profile.failure.min_gap_m, 1).unwrap_or_default())
         "\u{a0}m, leaving the road, or getting stuck."
