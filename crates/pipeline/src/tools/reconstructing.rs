@@ -17,7 +17,7 @@ use std::path::{Path, PathBuf};
 /// The table beside scenario files: what became of each incident, and of which crash type it is.
 const INDEX: &str = "index.csv";
 
-/// Writes the scenarios that show every told fact that is checked, each as a file named by its incident, and [`INDEX`] beside them.
+/// Writes the scenarios that show every told fact that is checked, each as a file named by its incident, and `index.csv` beside them.
 /// Gives the files of scenarios.
 ///
 /// # Errors
@@ -122,7 +122,7 @@ fn index(file: &Path, table: &RecordTable) -> Result<Vec<u8>, PipelineError> {
     writer.into_inner().map_err(|error| failed(error.into_error()))
 }
 
-/// Crash types of the scenarios that lie beside an [`INDEX`], by their ids; none where there is no such table, or it is another one.
+/// Crash types of the scenarios that lie beside an `index.csv`, by their ids; none where there is no such table, or it is another one.
 pub(crate) fn indexed_types(folder: &Path) -> BTreeMap<String, CrashType> {
     let Ok(mut reader) = csv::Reader::from_path(folder.join(INDEX)) else { return BTreeMap::new() };
     let Ok(header) = reader.headers().cloned() else { return BTreeMap::new() };
