@@ -130,15 +130,8 @@ pub fn type_table(types: &[TypeShare]) {
     title(
         "Readable incidents whose crash is reconstructed: no stated fact contradicted, nothing that the two did left out",
     );
-    let mut table = table(&[
-        "type",
-        "incidents",
-        "reconstructed",
-        "share",
-        "all facts shown",
-        "a fact not drawn",
-        "facts per 100 words",
-    ]);
+    let mut table =
+        table(&["type", "incidents", "scenes", "share", "all facts shown", "a fact not drawn", "facts per 100 words"]);
     let mut row = |label: &str, incidents: usize, told: usize, whole: usize, facts: String| {
         let share = format!("{:.1} %", 100.0 * told as f64 / incidents.max(1) as f64);
         table.add_row(vec![
