@@ -2,6 +2,7 @@
 
 use crate::common::{Place, copy};
 use serde_json::Value;
+use std::collections::BTreeSet;
 
 fn json(place: &Place, arguments: &[&str]) -> Value {
     let (code, shown, error) = place.run(&[arguments, &["--json"]].concat());
@@ -109,6 +110,33 @@ fn every_option_of_the_choice_reaches_it() {
     assert!(code == 3 && error.contains("template_weight is -1; it must be"), "{error}");
     let (code, _, error) = place.run(&["select", "--weighting", "fame"]);
     assert!(code == 2 && error.contains("frequency, severity, template"), "{error}");
+}
+
+#[test]
+fn picks_stay_when_records_come_in_until_they_are_to_be_chosen_anew() {
+    let place = Place::new();
+    let options = ["--records", "crashes.csv", "--budget", "4", "--profile", "open"];
+    let select = |extra: &[&str]| {
+        let (code, _, remarks) = place.run(&[&["select"], &options[..], extra].concat());
+        assert_eq!(code, 0, "{remarks}");
+        let out = if extra.contains(&"--out") { "fresh" } else { "suite" };
+        let text = std::fs::read(place.path(&format!("{out}/2-selection.json"))).unwrap();
+        let selection: Value = serde_json::from_slice(&text).unwrap();
+        let clusters = selection["clusters"].as_array().unwrap().iter();
+        (clusters.map(|cluster| cluster["pick"].to_string()).collect::<BTreeSet<_>>(), text, remarks)
+    };
+    place.few_records(40);
+    let (first, ..) = select(&[]);
+    place.few_records(80);
+    let (kept, _, remarks) = select(&[]);
+    assert_eq!(kept, first);
+    assert!(remarks.contains("have no pick, as those of the last choice stay"), "{remarks}");
+    assert!(remarks.contains("--reselect chooses anew"), "{remarks}");
+    // Nothing else has changed by then.
+    let (anew, text, remarks) = select(&["--reselect"]);
+    assert!(anew != first && !remarks.contains("as those of the last choice stay"), "{remarks}");
+    assert!(text == select(&["--out", "fresh"]).1, "as if nothing had been chosen before");
+    assert!(text == select(&[]).1, "and they stay");
 }
 
 #[test]

@@ -167,6 +167,10 @@ fn bad_choice(error: SelectError) -> PipelineError {
 /// Runs the stage.
 pub(super) fn run(work: &StageWork) -> Result<StageReport, PipelineError> {
     let choice = Choice::new(work.suite)?;
+    if work.suite.permissions().reselect {
+        // The same records gave other picks where an earlier choice was there to go on from.
+        work.suite.outdate(Stage::Select.name());
+    }
     let mut report = work.whole(&choice.inputs, || {
         let (records, embedding, kept) = choice.read()?;
         let embedding = for_strategy(&embedding, &records, choice.options.strategy);

@@ -172,6 +172,13 @@ impl Journal {
         self.add(store, done(unit, made))
     }
 
+    /// Takes a unit for one that was made of something else, as long as this program runs.
+    pub fn outdate(&mut self, unit: &str) {
+        if let Some(made) = self.units.get_mut(unit) {
+            made.inputs.clear();
+        }
+    }
+
     /// Forgets a unit.
     ///
     /// # Errors

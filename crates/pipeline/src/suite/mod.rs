@@ -501,6 +501,11 @@ impl Suite {
         hash.is_some() && self.store.hash(file) == hash
     }
 
+    /// Has a unit made again, though what it was made of may not have changed.
+    pub(crate) fn outdate(&self, unit: &str) {
+        self.lock().outdate(unit);
+    }
+
     /// Whether a finished unit wrote this file.
     pub(crate) fn wrote(&self, unit: &str, file: &str) -> bool {
         self.lock().get(unit).is_some_and(|unit| unit.outputs.contains_key(file))
