@@ -6,8 +6,7 @@ out again here, from the rollouts or by counting, and every claim must say the n
 import hashlib, json, math, struct, sys
 from pathlib import Path
 
-STEP_S, TOUCH_M, FRICTION, APPROACH_M, Z95 = 0.1, 0.02, 0.5, 0.1, 1.959963984540054
-TOUCH_S, SLACK_M = 0.025, 0.01  # a physics step, and by how much boxes may come to overlap in it without closing
+STEP_S, TOUCH_S, TOUCH_M, SLACK_M, FRICTION, APPROACH_M, Z95 = 0.1, 0.025, 0.02, 0.01, 0.5, 0.1, 1.959963984540054
 
 class Box:
     """A rectangle: middle, half sizes, and its axis."""
@@ -110,9 +109,8 @@ def impulse(masses, boxes, speeds, tracks, states):
     determinant = nn * tt - nt * nt
     n, t = (wanted_n * tt - wanted_t * nt) / determinant, (wanted_t * nn - wanted_n * nt) / determinant
     if abs(t) > FRICTION * n:
-        share = math.copysign(FRICTION, t)
-        n = wanted_n / (nn + share * nt)
-        t = share * n
+        n = wanted_n / (nn + math.copysign(FRICTION, t) * nt)
+        t = math.copysign(FRICTION * n, t)
     return (normal[0] * n + along[0] * t, normal[1] * n + along[1] * t)
 
 class Run:
@@ -134,25 +132,23 @@ class Run:
         still = lambda pose: [dict(pose["position"], heading=pose["heading"])] * len(ego["states"])
         things = [dict(thing, role="thing", states=still(thing["pose"])) for thing in rollout["obstacles"]]
         with_parts = lambda at: [(actors + things)[at]] + [part for part in actors if part.get("part_of") == at]
-        boxes_at = lambda of, k: [Box(track["states"][k], track["length_m"], track["width_m"]) for track in of if k < len(track["states"])]
+        boxes_at = lambda at, k: [Box(one["states"][k], one["length_m"], one["width_m"]) for one in with_parts(at) if k < len(one["states"])]
         for at, actor in enumerate(actors[1:] + things, 1):
             from_s, until_s = actor.get("appears_s", 0.0) - 1e-9, actor.get("gone_s", math.inf) - 1e-9
-            for k in range(min(len(ego["states"]), len(actor["states"]))):
-                if actor["role"] == "part" or not handover_s - 1e-9 <= k * STEP_S <= end + 1e-9:
-                    continue
-                there = boxes_at(with_parts(at), k) if from_s <= k * STEP_S < until_s else []
-                d = min((gap(a, b) for a in boxes_at(with_parts(0), k) for b in there), default=1e6)
-                least[at], first[at] = min(d, least.get(at, math.inf)), first.get(at, d)
-        bumps = [e for e in events if e["kind"]["event"] == "obstacle_contact" and e["kind"]["actor"] == 0]
-        hit = [len(actors) + e["kind"]["obstacle"] for e in bumps if handover_s - 1e-9 <= e["time_s"] <= end + 1e-9]
+            for k in range(0 if actor["role"] == "part" else min(len(ego["states"]), len(actor["states"]))):
+                if handover_s - 1e-9 <= k * STEP_S <= end + 1e-9:
+                    there = boxes_at(at, k) if from_s <= k * STEP_S < until_s else []
+                    d = min((gap(a, b) for a in boxes_at(0, k) for b in there), default=1e6)
+                    least[at], first[at] = min(d, least.get(at, math.inf)), first.get(at, d)
+        bumps = [e for e in events if e["kind"]["event"] == "obstacle_contact" and handover_s - 1e-9 <= e["time_s"] <= end + 1e-9]
+        hit = [len(actors) + e["kind"]["obstacle"] for e in bumps if e["kind"]["actor"] == 0]
         least.update(dict.fromkeys(hit + ([touched["b"]] if touched else []), 0.0))
         for role in ("thing", "traffic", "partner"):
             of_role = [d for at, d in least.items() if (actors + things)[at]["role"] == role]
             self.values["least_gap"] = min(of_role) if of_role else self.values.get("least_gap")
         others = [at for at in least if at < len(actors) and actors[at]["role"] == "partner" and not (touched and at == touched["b"])]
         near = any(least[at] < limits["min_gap_m"] and first[at] - least[at] > APPROACH_M for at in others)
-        failed = touched or near or hit or rollout["termination"]["kind"] in ("off_road", "stuck")
-        self.values["verdict"] = "failed" if failed else "passed"
+        self.values["verdict"] = "failed" if touched or near or hit or rollout["termination"]["kind"] in ("off_road", "stuck") else "passed"
         if touched:
             states, tracks = (touched["a_state"], touched["b_state"]), (ego, actors[touched["b"]])
             boxes = [Box(state, track["length_m"], track["width_m"]) for state, track in zip(states, tracks)]
